@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
-from ..theory.backbones import JKR
 from ..theory.restitution import wu
 from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
 from . import oblique
@@ -174,9 +173,9 @@ def loops(outcome: Outcome) -> list[Chart]:
 
 def _theory_loops(x: Experiment, prediction: Prediction) -> list[Series]:
     """Loading and unloading of theory at each speed; none with adhesion or a dashpot."""
-    law, series = x.theory(), []
-    if isinstance(law, JKR) or x.viscous_restitution is not None:
+    if x.law.adheres or x.viscous_restitution is not None:
         return []
+    law, series = x.backbone(), []
     for k, (speed, top) in enumerate(zip(prediction.speed, prediction.overlap_max, strict=True)):
         up = np.linspace(0.0, 1.0, 120)[1:] * top
         down = np.linspace(float(law.residual_overlap(top)), top, 120)[::-1]

@@ -17,8 +17,9 @@ from ..errors import CaseError
 from ..laws import library
 from ..laws.library import Law
 from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
+from ..theory import law as theory_law
 from ..theory import pair
-from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
+from ..theory.backbones import ADHESIVE, LAWS, Backbone
 from ..theory.numerics import Real
 
 
@@ -134,9 +135,13 @@ class Experiment:
         body, target = self.body, self.target
         return body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio
 
-    def theory(self) -> Backbone | JKR:
+    def theory(self) -> theory_law.Law:
         """The law in the theory."""
         return self.law.theory(E_star=self.E_star, R_star=self.R_star)
+
+    def backbone(self) -> Backbone:
+        """The law in the theory, of impacts without adhesion. Raises KeyError for others."""
+        return self.law.backbone(E_star=self.E_star, R_star=self.R_star)
 
     def native_law(self) -> Law:
         """The same law in C++."""
@@ -179,10 +184,7 @@ def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> 
     for _ in range(20):  # the factor hardly changes the radius: three digits a turn
         found = spec.of(*(factor * s for s in spec.strengths))
         theory, work = found.theory(E_star=E_star, R_star=R_star), 0.5 * m_star * speed**2
-        if isinstance(theory, JKR):
-            a = float(theory.radius_of_work(work))
-        else:
-            a = float(theory.radius(theory.overlap_of_work(work)))
+        a = float(theory.radius_of_work(work))
         factor = 1.0 + rate.sensitivity * math.log(
             max(float(strain_rate(speed, a, share=found.share)) / rate.reference, 1.0)
         )
@@ -208,7 +210,7 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     speed, angle, spin = case.impact.rows()
     numbers = law_numbers(case.law.name, case.law.parameters())
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
-        numbers = replace(default_numbers(law), adhesion=numbers.adhesion if law in ADHESIVE else None)
+        numbers = replace(default_numbers(law), adhesion=numbers.adhesion if law_named(law).adheres else None)
     spec = pair_of(numbers, body, target)
     if case.rate:
         speeds = sorted(case.impact.speed_values())

@@ -7,8 +7,6 @@ import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
-from ..theory import adhesion
-from ..theory.backbones import JKR
 from . import oblique
 from .engine import Trajectory
 from .plan import Plan
@@ -47,8 +45,8 @@ def _last(valid: np.ndarray) -> np.ndarray:
 def measure(plan: Plan, path: Trajectory) -> Measured:
     """The impacts of a trajectory. Raises EngineError if a contact never began or never ended."""
     law = plan.experiment.theory()
-    if isinstance(law, JKR):
-        return _with_adhesion(plan, path, law)
+    if plan.experiment.law.adheres:
+        return _with_adhesion(plan, path)
     overlap, force, velocity = path.overlap, path.force, path.velocity
     row = np.arange(plan.n)
     sampled = np.isfinite(force)
@@ -77,7 +75,7 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
     work = force[:, 1:] + force[:, :-1]
     work *= overlap[:, 1:] - overlap[:, :-1]
     work[~(loaded[:, 1:] | loaded[:, :-1])] = 0.0
-    plastic = law.work(peak) - law.recovered_work(peak)
+    lost = law.lost_work(peak)
     e_n = -velocity[row, end] / plan.speed
     rebound = None
     if path.tangential is not None and path.spin is not None:
@@ -88,13 +86,13 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
-        energy_residual=(0.5 * work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
+        energy_residual=(0.5 * work.sum(axis=1) - lost) / energy if own else np.full(plan.n, np.nan),
         steps_in_contact=loaded.sum(axis=1),
         rebound=rebound,
     )
 
 
-def _with_adhesion(plan: Plan, path: Trajectory, law: JKR) -> Measured:
+def _with_adhesion(plan: Plan, path: Trajectory) -> Measured:
     """As `measure`: in contact as long as there is a force, of either sign; the last step with one is the first apart.
 
     The bodies part within that step. By the momentum of the pull, which it then has for the share s of a step,
@@ -115,7 +113,7 @@ def _with_adhesion(plan: Plan, path: Trajectory, law: JKR) -> Measured:
     between = overlap[row, last] + share * (overlap[row, apart] - overlap[row, last])
     peak = np.where(sampled, overlap, -np.inf).max(axis=1)
     work = 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap)
-    lost = adhesion.lost_work(law, peak)
+    lost = x.theory().lost_work(peak)
     nothing = np.full(plan.n, np.nan)
     return Measured(
         e_n=np.where(stuck, 0.0, -velocity[row, end] / plan.speed),

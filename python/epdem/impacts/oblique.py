@@ -12,7 +12,6 @@ import numpy as np
 
 from ..case.fields import NODES
 from ..theory import partial_slip
-from ..theory.backbones import Backbone
 from .experiment import Experiment
 
 SLIDING = 1e-3  # how far below mu the ratio of impulses of an impact that slides throughout may lie
@@ -83,8 +82,7 @@ def after_slip(x: Experiment, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def predict(x: Experiment, e_n: np.ndarray) -> Rebound:
     """Theory with partial slip: springs along the line of contact, for every law."""
-    o, slip, law = x.friction_of_oblique(), slip_before(x), x.theory()
-    assert isinstance(law, Backbone)  # an experiment has no oblique impacts with adhesion
+    o, slip, law = x.friction_of_oblique(), slip_before(x), x.backbone()
     after = np.empty(slip.shape)
     for speed in np.unique(x.speed):
         rows = x.speed == speed

@@ -8,9 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..laws.strengths import law_named
-from ..theory import adhesion, restitution, validity, viscous
-from ..theory.backbones import JKR
-from ..theory.yielding import first_yield_speed
+from ..theory import validity
 from . import oblique
 from .experiment import Experiment, strain_rate
 
@@ -72,34 +70,22 @@ def predict(experiment: Experiment) -> Prediction:
     """
     x, law = experiment, experiment.theory()
     pair: dict[str, Any] = {"m_star": x.m_star, "speed": x.speed}
-    columns: dict[str, Any] = {}
-    speeds: dict[str, float] = {}
-    observed = np.nan
-    impact: restitution.Impact
-    if isinstance(law, JKR):
-        impact = adhesion.impact(law, **pair)
-        columns["residual_overlap"] = impact.parting_overlap
-        yielded = impact.radius_max.max() > max(float(law.touch_radius), float(law.yield_radius))
-        barely = 1.001 * float(adhesion.sticking_speed(law, m_star=x.m_star))
-        if barely > 0:
-            observed = 1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely))
-    else:
-        if x.viscous_restitution is None:
-            impact = restitution.impact(law, **pair)
-        else:
-            impact = viscous.impact(law, restitution=x.viscous_restitution, **pair)
-        yielded = impact.overlap_max.max() > law.yield_overlap
-        speeds = {
-            b.material: float(first_yield_speed(law, b.yield_stress, m_star=x.m_star))
-            for b in (x.body, x.target)
-            if b.yield_stress is not None and not b.rigid
-        }
-    columns = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:] if n != "strain"} | columns
+    impact = law.impact(**pair, restitution=x.viscous_restitution)
+    barely, observed = 1.001 * float(law.sticking_speed(m_star=x.m_star)), np.nan
+    if barely > 0:
+        observed = 1.5 * float(law.impact(m_star=x.m_star, speed=barely).contact_time)
+    first_yield = {
+        b.material: law.first_yield_speed(b.yield_stress, m_star=x.m_star)
+        for b in (x.body, x.target)
+        if b.yield_stress is not None and not b.rigid
+    }
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:] if n != "strain"}
+    columns["residual_overlap"] = np.asarray(impact.parting_overlap, float)
     columns["strain"] = x.law.share * columns["radius_max"] / x.R_star
     return Prediction(
         speed=x.speed,
-        yields=_softer(x) if yielded else (),
-        yield_speeds=speeds,
+        yields=_softer(x) if law.has_yielded(impact) else (),
+        yield_speeds={material: float(speed) for material, speed in first_yield.items() if speed is not None},
         rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
         caveats=(
             *validity.caveats(law, **pair),

@@ -4,13 +4,14 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from ..theory.indentation import PYRAMID, Indentation, mean_pressure
 from ..theory.indentation import yield_stress as yield_stress_of
+from ..theory.law import Law
 from ..theory.numerics import Real, bisect
 from ..theory.pair import HARDENING, E_star, strain_share
 
@@ -73,15 +74,28 @@ class LawSpec:
     strengths: tuple[float, float]
     common: bool = False
 
-    def theory(self, *, E_star: float, R_star: Real) -> Backbone | JKR:
+    def theory(self, *, E_star: float, R_star: Real) -> Law:
         """The law in the theory for one R_star [m] or many, shape (n,).
 
         Raises ValueError for parameters that make no sense together.
         """
+        make = self.adhesive if self.adheres else self.backbone
+        return make(E_star=E_star, R_star=R_star)
+
+    def backbone(self, *, E_star: float, R_star: Real) -> Backbone:
+        """`theory` of a law without adhesion. Raises KeyError for another one."""
+        law = LAWS[self.name]
+        share = {"share": self.share} if law.uses_share else {}
+        return law(E_star=E_star, R_star=R_star, **self._numbers, **share)
+
+    def adhesive(self, *, E_star: float, R_star: Real) -> JKR:
+        """`theory` of a law with adhesion. Raises KeyError for another one."""
+        return ADHESIVE[self.name](E_star=E_star, R_star=R_star, **self._numbers)
+
+    @property
+    def _numbers(self) -> dict[str, Any]:
         symbols = law_named(self.name).symbols
-        classes: dict[str, type[Backbone] | type[JKR]] = {**LAWS, **ADHESIVE}
-        law, numbers = classes[self.name], {symbols[n]: x for n, x in self.parameters.items()}
-        return law(E_star=E_star, R_star=R_star, **numbers, **({"share": self.share} if law.uses_share else {}))
+        return {symbols[name]: x for name, x in self.parameters.items()}
 
     def of(self, body: float, target: float) -> "LawSpec":
         """The same law for two bodies of these strengths [Pa]."""
@@ -244,6 +258,4 @@ def yield_ratio_of(law: LawNumbers, strength: float, solid: Solid) -> float:
 def _alone(law: LawNumbers, strength: float, modulus: float) -> Backbone:
     """The law without adhesion at R* = 1, of two bodies of this strength [Pa] and E* = `modulus` [Pa]."""
     dry = law_named(law.name).without_adhesion or law.name  # attraction plays no part in the strength
-    theory = replace(law, name=dry, absolute=strength).pair(strength, strength).theory(E_star=modulus, R_star=1.0)
-    assert not isinstance(theory, JKR)
-    return theory
+    return replace(law, name=dry, absolute=strength).pair(strength, strength).backbone(E_star=modulus, R_star=1.0)

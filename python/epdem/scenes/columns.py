@@ -278,9 +278,10 @@ def _one_kind(
     its largest overlap b: the force is that of the contact alone at b - (b - overlap)/G.
     """
     spec, E_star = pair_law(case, a, b)
-    theory = spec.theory(E_star=E_star, R_star=R)
-    if isinstance(theory, JKR):
-        return _with_adhesion(theory, overlap, np.maximum(largest, overlap), attached)
+    if spec.adheres:
+        adhesive = spec.adhesive(E_star=E_star, R_star=R)
+        return _with_adhesion(adhesive, overlap, np.maximum(largest, overlap), attached)
+    theory = spec.backbone(E_star=E_star, R_star=R)
     law = Law(spec.name, E_star=E_star, share=spec.share, **spec.parameters)
     largest = np.maximum(largest, overlap)
     given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)

@@ -9,7 +9,6 @@ import pandas as pd
 from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
-from ..theory.backbones import JKR
 from .columns import columns_of_rows, last_frame
 from .model import pair_law
 from .plan import ScenePlan
@@ -208,8 +207,7 @@ def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     speeds = np.zeros(len(types))
     for (a, b), at in types.groupby(["a", "b"]).indices.items():
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
-        law = spec.theory(E_star=E_star, R_star=R_star[at])
-        assert not isinstance(law, JKR)  # refused before the run
+        law = spec.backbone(E_star=E_star, R_star=R_star[at])
         work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
         speeds[at] = np.sqrt(2.0 * work / m_star[at])
     return speeds

@@ -12,9 +12,7 @@ from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, plane, sphere
 from ..impacts.plan import search, stability_limit
 from ..impacts.prediction import Prediction, predict
-from ..theory import adhesion
 from ..theory import timestep as times
-from ..theory.backbones import JKR
 from .model import model, numbers, pair_law
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
@@ -110,10 +108,8 @@ def _impact(case: SceneCase, body: Body, target: Body, v: float) -> Experiment:
 
 def _far_from_sticking(x: Experiment) -> np.ndarray:
     """The speeds at which the error of e_n says something: near the sticking speed e_n falls to 0 as a root."""
-    law, v = x.theory(), x.speed
-    if not isinstance(law, JKR):
-        return v
-    share = v / max(float(adhesion.sticking_speed(law, m_star=x.m_star)), 1e-300)
+    v = x.speed
+    share = v / max(float(x.theory().sticking_speed(m_star=x.m_star)), 1e-300)
     far = v[(share < 0.5) | (share > 2.0)]
     return far if far.size else v[-1:] * 2.0 / share[-1]
 

@@ -19,8 +19,7 @@ from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, bodies, pair_of, rated
 from ..impacts.prediction import predict
 from ..laws.strengths import LEAST_STRENGTH, LawNumbers, law_named, strength_of_hardness
-from ..theory import adhesion
-from ..theory.backbones import JKR, Backbone
+from ..theory.backbones import Backbone
 from ..theory.indentation import KGF_PER_MM2, PYRAMID, VICKERS, Indentation
 from ..theory.numerics import bisect
 
@@ -108,13 +107,9 @@ class _Uncalibrated:
     def result(self, strength: float, speed: float | None, source: str) -> Calibration:
         """The calibration with this strength [Pa]."""
         x = self.experiment(strength, speed or 1.0)
-        theory = x.theory()
         e_n = float(predict(x).e_n[0]) if speed else None
         stress = strength / law_named(self.law.name).default_ratio
-        if isinstance(theory, JKR):
-            yield_speed = float(adhesion.yield_speed(theory, m_star=x.m_star))
-        else:
-            yield_speed = math.sqrt(2.0 * float(theory.work(theory.yield_overlap)) / x.m_star)
+        yield_speed = float(x.theory().yield_speed(m_star=x.m_star))
         return Calibration(self.law.name, self.parameter, strength, stress, yield_speed, e_n, speed, source)
 
 
@@ -192,11 +187,11 @@ def from_indentation(path: Path, curve: Path) -> Calibration:
     modulus = uncalibrated.experiment(1e9, 1.0).E_star
 
     def branch(logarithm: float) -> Backbone:
-        theory = uncalibrated.experiment(math.exp(logarithm), 1.0).theory()
-        if isinstance(theory, JKR):
+        x = uncalibrated.experiment(math.exp(logarithm), 1.0)
+        if x.law.adheres:
             dry = law_named(uncalibrated.law.name).without_adhesion
             raise CaseError(f"{path}: an indentation curve has no adhesion here; take law.name = {dry!r}")
-        return theory
+        return x.backbone()
 
     def misfit(logarithm: float) -> float:
         return float(np.sum((branch(logarithm).force(depth) / force.max() - force / force.max()) ** 2))

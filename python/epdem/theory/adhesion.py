@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import restitution as plain
-from .jkr import JKR, Numbers, Path
+from .adhesive_curve import AdhesiveCurve, Numbers, Path
 from .numerics import bisect, gauss, number
-from .thornton_ning import ThorntonNing
 
 # Energy at the fold and at touch in E* (c R*)^(10/3)/R*^2: 4^(-4/3)/5 and -3/10. Their difference is W_s.
 _LOSS = 0.3 + 4 ** (-4 / 3) / 5
@@ -29,17 +28,16 @@ class Impact(plain.Impact):
     """As without adhesion; bodies that stick have e_n = 0, contact_time = inf and work_out = 0.
 
     residual_overlap is the dent alpha_p, from which the opening contact counts its overlap; the contact ends below it,
-    at parting_overlap.
+    at the fold.
     """
 
-    parting_overlap: np.ndarray  # of the fold [m]
     pull_max: np.ndarray  # largest tensile force on the way out, 3/2 pi Gamma R_p [N]
     # Lost in the jumps at touch and parting [J]. If the bodies stick: all that has not yielded, negative where the
     # attraction has done plastic work beyond what the impact brought.
     adhesive_work: np.ndarray
 
 
-def sticking_work(law: JKR) -> Numbers:
+def sticking_work(law: AdhesiveCurve) -> Numbers:
     """Work that an elastic contact loses by adhesion [J]: W_s = 7.0922 (Gamma^5 R*^4/E*^2)^(1/3).
 
     The difference of the energies at the fold and at touch; Thornton and Ning 1998 print 7.09 of it.
@@ -47,7 +45,7 @@ def sticking_work(law: JKR) -> Numbers:
     return STICKING_WORK * np.cbrt(law.Gamma**5 * law.R_star**4 / law.E_star**2)
 
 
-def yield_speed(law: JKR, *, m_star: Numbers) -> Numbers:
+def yield_speed(law: AdhesiveCurve, *, m_star: Numbers) -> Numbers:
     """Impact speed of first yield [m/s]; 0 if a contact yields by its own attraction, inf for JKR. m_star [kg] > 0."""
     m = number("m_star", m_star)
     a_y = np.asarray(law.yield_radius, float)
@@ -56,7 +54,7 @@ def yield_speed(law: JKR, *, m_star: Numbers) -> Numbers:
     return np.where(a_y <= law.touch_radius, 0.0, np.sqrt(2 * np.maximum(law.work(a_y), 0.0) / m))
 
 
-def sticking_speed(law: JKR, *, m_star: Numbers) -> Numbers:
+def sticking_speed(law: AdhesiveCurve, *, m_star: Numbers) -> Numbers:
     """Impact speed V_s up to which the bodies stick [m/s]. m_star [kg] > 0.
 
     Elastic: sqrt(2 W_s/m*). With yield: that at which the opening branch gives back just nothing, F(a_m) = k P_t(a_m)
@@ -81,13 +79,13 @@ def sticking_speed(law: JKR, *, m_star: Numbers) -> Numbers:
     return np.where(reach <= law.yield_radius, np.sqrt(2 * sticking_work(law) / m), flows)
 
 
-def _recovered(law: JKR, a_max: Numbers) -> Numbers:
+def _recovered(law: AdhesiveCurve, a_max: Numbers) -> Numbers:
     """Work that the opening branch gives back from a_max to its fold [J]; negative if it cannot come loose."""
     branch, _ = law.branch(a_max)
     return branch.energy(a_max) - branch.energy(branch.fold_radius)
 
 
-def e_n(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
+def e_n(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numbers:
     """Coefficient of restitution of an impact at `speed` [m/s] > 0 with m_star [kg] > 0; 0 if the bodies stick.
 
     Elastic: sqrt(1 - (V_s/V)^2) (Thornton and Ning 1998). With yield e_n^2 is the work of the opening branch over
@@ -104,14 +102,14 @@ def e_n(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
     return np.sqrt(np.where(a <= law.yield_radius, elastic, flows))
 
 
-def plastic_work(law: JKR, top: Numbers) -> Numbers:
+def plastic_work(law: AdhesiveCurve, top: Numbers) -> Numbers:
     """Work lost by yield [J] of a contact that reached the contact radius `top` [m]."""
     (branch, _), (start, _), first = law.branch(top), law.branch(law.touch_radius), law.touch_radius
     yields = top > np.maximum(law.yield_radius, first)
     return np.where(yields, np.maximum(law.work(top) + start.energy(first) - branch.energy(top), 0.0), 0.0)
 
 
-def lost_work(law: JKR, alpha_max: Numbers) -> Numbers:
+def lost_work(law: AdhesiveCurve, alpha_max: Numbers) -> Numbers:
     """Work [J] that a contact loses which reaches the overlap alpha_max [m] > 0 and parts: by adhesion and by yield."""
     top = law.radius(alpha_max)
     return law.work(top) - _recovered(law, top)
@@ -138,14 +136,14 @@ def _time(m: Numbers, path: Path, above: Numbers) -> Numbers:
     return total
 
 
-def contact_time(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
+def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numbers:
     """Time from touch to parting [s]; inf if the bodies stick. Arguments as of `impact`; to 1e-10."""
     m, v = number("m_star", m_star), number("speed", speed)
     W = 0.5 * m * v * v
     top = law.radius_of_work(W)
     elastic = np.clip(law.yield_radius, law.touch_radius, np.maximum(top, law.touch_radius))
     above, time = np.zeros(np.shape(top)), np.zeros(np.shape(top))
-    if isinstance(law, ThorntonNing):
+    if np.any(np.isfinite(law.yield_radius)):
         time = _time(m, law.plastic_path(elastic, np.maximum(top, elastic)), above)
         above = law.work(top) - law.work(elastic)
     time = time + _time(m, law.elastic_path(law.touch_radius, elastic), above)
@@ -154,7 +152,7 @@ def contact_time(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
     return np.where(e_n(law, m_star=m, speed=v) > 0, time + back, np.inf)
 
 
-def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
+def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Impact:
     """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
     like = law.E_star * law.R_star * law.Gamma * law.yield_radius
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), like)
@@ -183,7 +181,7 @@ def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
     return Impact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
 
 
-def tabor_number(law: JKR, *, z_0: Numbers = 0.2e-9) -> Numbers:
+def tabor_number(law: AdhesiveCurve, *, z_0: Numbers = 0.2e-9) -> Numbers:
     """Tabor's number (R* Gamma^2/(E*^2 z_0^3))^(1/3) (Tabor 1977).
 
     z_0 [m] > 0 is the range of the attraction, about an atom's distance. ValueError outside.
@@ -191,7 +189,7 @@ def tabor_number(law: JKR, *, z_0: Numbers = 0.2e-9) -> Numbers:
     return np.cbrt(law.R_star * (law.Gamma / law.E_star) ** 2) / number("z_0", z_0)
 
 
-def warning(law: JKR, *, z_0: Numbers = 0.2e-9) -> str | None:
+def warning(law: AdhesiveCurve, *, z_0: Numbers = 0.2e-9) -> str | None:
     """One sentence if an adhesive contact lies outside the domain of JKR (Tabor's number below 3), else None."""
     numbers = np.asarray(tabor_number(law, z_0=z_0) + 0.0 * law.Gamma)
     low = numbers[(numbers > 0) & (numbers < TABOR_MIN)]

@@ -15,14 +15,14 @@ from .meyer import Meyer
 from .thornton import Thornton
 from .thornton_ning import ThorntonNing
 
-Law = TypeVar("Law", Backbone, JKR)
+Kind = TypeVar("Kind", Backbone, JKR)
 
 
-class _Laws(Mapping[str, type[Law]]):
+class _Laws(Mapping[str, type[Kind]]):
     """Classes by the name of the law; the C library is read when they are looked at."""
 
-    def __init__(self, base: type[Law], adheres: bool):
-        self.base: type[Law] = base
+    def __init__(self, base: type[Kind], adheres: bool):
+        self.base: type[Kind] = base
         self.adheres = adheres
 
     def __iter__(self) -> Iterator[str]:
@@ -31,7 +31,7 @@ class _Laws(Mapping[str, type[Law]]):
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
-    def __getitem__(self, name: str) -> type[Law]:
+    def __getitem__(self, name: str) -> type[Kind]:
         if name not in list(self):
             raise KeyError(name)
         classes = [c for c in vars(import_module(f".{name}", __package__)).values() if isinstance(c, type)]

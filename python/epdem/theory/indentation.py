@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .backbone import Backbone
+from .curve import Curve
 from .numerics import bisect
 
 PYRAMID = math.tan(math.radians(19.7))  # slope of the cone with the volume of a Vickers pyramid
@@ -55,7 +55,7 @@ def yield_stress(
     return float(bisect(too_soft, test.pressure / most, test.pressure)[1])
 
 
-def mean_pressure(law: Backbone, slope: float) -> float:
+def mean_pressure(law: Curve, slope: float) -> float:
     """Mean pressure F/(pi a^2) [Pa] of a law at a/R* = `slope`; laws with one R*."""
     a = slope * float(law.R_star)
     overlap = bisect(lambda alpha: law.radius(alpha) < a, 0.0, a**2 / float(law.R_star))[1]  # a^2 >= R* alpha

@@ -8,7 +8,7 @@ of dimensionality reduction, Popov and Hess 2015), and the reference of the C++ 
 
 import numpy as np
 
-from .backbone import Backbone
+from .curve import Curve
 from .numerics import Array, Real, number, segment
 from .restitution import impact as normal_impact
 
@@ -70,7 +70,7 @@ class Springs:
 
 
 def rebound(
-    law: Backbone,
+    law: Curve,
     *,
     m_star: float,
     m_tangential: float,

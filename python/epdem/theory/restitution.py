@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .backbone import Backbone
+from .curve import Curve
 from .numerics import Array, Real, gauss, number
 
 _X, _W = gauss(48)
@@ -25,12 +25,13 @@ class Impact:
     overlap_max: Array  # [m]
     radius_max: Array  # [m]
     residual_overlap: Array  # [m]
+    parting_overlap: Array  # at which the contact ends [m]
     work_in: Array  # [J]
     work_out: Array  # [J]
     plastic_work: Array  # [J]
 
 
-def e_n(law: Backbone, *, m_star: Real, speed: Real) -> Array:
+def e_n(law: Curve, *, m_star: Real, speed: Real) -> Array:
     """Coefficient of restitution of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0.
 
     e_n^2 = kappa F^2/(a E* W) at W(alpha_max) = m* v^2/2; exactly 1 up to yield.
@@ -49,13 +50,13 @@ def _integral(rate: Callable[[Array], Array], shape: tuple[int, ...]) -> Array:
     return total
 
 
-def _work_between(law: Backbone, low: Real, high: Real, width: Real) -> Array:
+def _work_between(law: Curve, low: Real, high: Real, width: Real) -> Array:
     """W(high) - W(low) within one formula of the law; width = high - low. By Gauss where a difference would cancel."""
     near = width * sum(w * law.force(high - width * x) for x, w in zip(*gauss(8), strict=True))
     return np.where(width < 1e-3 * high, near, law.work(high) - law.work(low))
 
 
-def _loading_time(law: Backbone, m_star: Array, top: Array) -> Array:
+def _loading_time(law: Curve, m_star: Array, top: Array) -> Array:
     """Integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*): alpha = top sin^2 theta takes both end singularities.
 
     Split where the law changes its formula: no piece of the work is integrated across a kink.
@@ -77,7 +78,7 @@ def _loading_time(law: Backbone, m_star: Array, top: Array) -> Array:
     return total
 
 
-def _unloading_time(law: Backbone, m_star: Array, top: Array, work_out: Array) -> Array:
+def _unloading_time(law: Curve, m_star: Array, top: Array, work_out: Array) -> Array:
     """Time from the peak to zero force; closed for tau = 0, else by quadrature in y of the opening circle."""
     closed = UNLOADING_TIME * law.recovered_overlap(top) / np.sqrt(2 * work_out / m_star)
     tau = np.asarray(law.flatness(top), float)
@@ -103,14 +104,14 @@ def _given_back(y: Array, A: Array, B: Array, tau: Array) -> Array:
     return total
 
 
-def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
+def impact(law: Curve, *, m_star: Real, speed: Real) -> Impact:
     """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), law.E_star * law.yield_overlap)
     W = 0.5 * m * v * v
     top = np.asarray(law.overlap_of_work(W), float)
     elastic = top <= law.yield_overlap
     out = np.where(elastic, W, np.minimum(law.recovered_work(top), W))
-    time = _loading_time(law, m, top)
+    time, dent = _loading_time(law, m, top), np.asarray(law.residual_overlap(top))
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
     return Impact(
         e_n=np.where(elastic, 1.0, np.sqrt(out / W)),
@@ -118,7 +119,8 @@ def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
         force_max=np.asarray(law.force(top)),
         overlap_max=top,
         radius_max=np.asarray(law.radius(top)),
-        residual_overlap=np.asarray(law.residual_overlap(top)),
+        residual_overlap=dent,
+        parting_overlap=dent,
         work_in=W,
         work_out=out,
         plastic_work=np.asarray(law.plastic_work(top)),

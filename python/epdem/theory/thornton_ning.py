@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from .jkr import JKR, Numbers, Path
+from .adhesive_curve import AdhesiveCurve, Numbers, Path
+from .jkr import JKR
 from .numerics import gauss
 
 _T, _W = gauss(8)  # exact up to degree 15, which is that of the work of the plastic branch
@@ -76,7 +77,7 @@ class ThorntonNing(JKR):
         flow = sum(w * power(t) for t, w in zip(_T, _W, strict=True))
         return self.energy(elastic) - self.energy(first) + np.where(a > elastic, flow, 0.0)
 
-    def branch(self, a_max: Numbers) -> tuple[JKR, Numbers]:
+    def branch(self, a_max: Numbers) -> tuple[AdhesiveCurve, Numbers]:
         """The elastic contact (JKR) on which one that reached a_max [m] opens again, and the shift alpha_p [m] of its
         overlaps: alpha = alpha_p + branch.overlap(a). Up to a_y it is the law's own elastic branch."""
         a_max = np.asarray(a_max, float)
@@ -84,5 +85,5 @@ class ThorntonNing(JKR):
         safe: Numbers = np.where(yields, a_max, self.yield_radius)
         R_p: Numbers = 4 / 3 * self.E_star * safe**3 / (self.force(safe) + self.adhesive_load(safe))
         R_p = np.where(yields, R_p, self.R_star)
-        opened = JKR(E_star=self.E_star, R_star=R_p, Gamma=self.Gamma)
+        opened = AdhesiveCurve(E_star=self.E_star, R_star=R_p, Gamma=self.Gamma)
         return opened, np.where(yields, safe**2 * (1 / self.R_star - 1 / R_p), 0.0)

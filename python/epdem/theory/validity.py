@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Where a prediction leaves the range in which the law, or small-deformation theory, has been compared with anything.
 
-Each law states its own limits (`Backbone.caveats`); the limits of all laws together are here.
+Each law states its own limits (`Law.caveats`); the limits of all laws together are here.
 """
 
 import numpy as np
 
-from . import adhesion
-from .backbone import Backbone
-from .jkr import JKR
+from .law import Law
 from .numerics import Array, Real, number
 
 SMALL_DEFORMATION = 0.3  # strain w a_max/R* above which results are flagged everywhere
@@ -18,11 +16,8 @@ SMALL_DEFORMATION = 0.3  # strain w a_max/R* above which results are flagged eve
 FINITE_STRAIN = {0.2: 0, SMALL_DEFORMATION: 23}
 
 
-def caveats(law: Backbone | JKR, *, m_star: float, speed: Real) -> list[str]:
+def caveats(law: Law, *, m_star: float, speed: Real) -> list[str]:
     """Sentences, none where all is well, on the law itself at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
-    if isinstance(law, JKR):
-        tabor = adhesion.warning(law)
-        return [tabor] if tabor else []
     return law.caveats(m_star=m_star, speed=np.ravel(number("speed", speed)))
 
 

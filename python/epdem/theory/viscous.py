@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from . import restitution as undamped
-from .backbone import Backbone
+from .curve import Curve
 from .numerics import Array, Real, bisect, gauss, number
 
 RESTITUTION_MIN = 0.14  # the formula's limit for zeta -> 1 is exp(-2) = 0.135
@@ -86,7 +86,7 @@ def _largest(f: Rate, path: Array, g: Rate) -> Array:
     return g(_advance(f, y, 0.5 * (low + high)))
 
 
-def _yielding_time(law: Backbone, m: Array, start: Array, top: Array) -> Array:
+def _yielding_time(law: Curve, m: Array, start: Array, top: Array) -> Array:
     """Time on the backbone from overlap `start` to rest at `top`: quadrature in c, alpha = top - (top - start) c^2."""
     edges = [start, *(np.clip(kink, start, top) for kink in law.kinks()), top]
     total = np.zeros_like(top)
@@ -124,7 +124,7 @@ def _elastic(share: Array, dashpot: float, q_yield: Array) -> tuple[Array, Array
     return end, turn, np.maximum(inside, force(end))
 
 
-def _unload(law: Backbone, top: Array, L: Array, V: Array, m: Array, dashpot: float) -> Array:
+def _unload(law: Curve, top: Array, L: Array, V: Array, m: Array, dashpot: float) -> Array:
     """The elastic branch from rest at `top`, in units of the elastic recovery (L) and of the undamped rebound (V)."""
 
     def forces(q: Array, v: Array) -> Array:
@@ -142,7 +142,7 @@ def _unload(law: Backbone, top: Array, L: Array, V: Array, m: Array, dashpot: fl
     return _first_zero(rate, path, loaded)
 
 
-def impact(law: Backbone, *, m_star: Real, speed: Real, restitution: float) -> Impact:
+def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Impact:
     """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
 
     restitution in [0.14, 1] is that of impacts that do not yield. Raises ValueError for values outside.
@@ -181,6 +181,7 @@ def impact(law: Backbone, *, m_star: Real, speed: Real, restitution: float) -> I
         "overlap_max": top,
         "radius_max": law.radius(top),
         "residual_overlap": parting,
+        "parting_overlap": parting,
         "work_in": W,
         "work_out": work_out,
         "plastic_work": W_plastic,

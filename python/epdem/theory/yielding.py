@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from .backbone import Backbone
+from .curve import Curve
 from .numerics import Array, Real, bisect, number
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
 
 
-def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIRST_YIELD_ROUNDED) -> Array:
+def first_yield_speed(law: Curve, Y: Real, *, m_star: Real, ratio: Real = FIRST_YIELD_ROUNDED) -> Array:
     """Impact speed [m/s] from which a body of yield stress Y [Pa] yields (section 8.2.2): its peak pressure is ratio Y.
 
     `law` has the strength of the softer body of the pair, whose flow limits the pressure: a much harder body never

@@ -27,7 +27,6 @@ from ..impacts.run import run_and_compare
 from ..jobs.engine import require
 from ..laws.strengths import default_numbers, law_named, strength_of_hardness
 from ..studies.calibrate import EXPONENT, hardness_test, specimen
-from ..theory.backbones import JKR
 from .models import engine
 
 ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
@@ -114,10 +113,9 @@ def _simulated(x: Experiment, row: pd.Series, quantity: str) -> float:
     """What a run of an impact gives for a quantity: e_n, or the width [m] of the contact at its largest overlap."""
     if quantity == "e_n":
         return float(row["e_n"])
-    law = x.theory()
-    if isinstance(law, JKR):
-        raise CaseError(f"law {law.name}: the width of a dent under adhesion is not computed")
-    return 2.0 * float(law.radius(row["overlap_max"]))
+    if x.law.adheres:
+        raise CaseError(f"law {x.law.name}: the width of a dent under adhesion is not computed")
+    return 2.0 * float(x.theory().radius(row["overlap_max"]))
 
 
 def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Path) -> list[dict[str, object]]:

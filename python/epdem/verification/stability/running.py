@@ -14,8 +14,6 @@ from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
 from ...impacts.plan import stability_limit, starting_phases
 from ...impacts.prediction import Prediction, predict
-from ...theory import adhesion
-from ...theory.backbones import JKR
 from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .sampling import Sampler
@@ -76,9 +74,10 @@ class Setting:
 def setting(extreme: Extreme, law: str) -> Setting:
     """Theory of an extreme case, with the work already stored in an overlap at t = 0."""
     x = extreme.experiment(law)
-    prediction, theory = predict(x), x.theory()
-    if isinstance(theory, JKR):
-        return _with_adhesion(x, prediction, theory)
+    prediction = predict(x)
+    if x.law.adheres:
+        return _with_adhesion(x, prediction)
+    theory = x.backbone()
     kinetic, top = 0.5 * x.m_star * float(x.speed[0]) ** 2, float(prediction.overlap_max[0])
     start = None if extreme.start is None else extreme.start * top
     energy = kinetic + (float(theory.work(start)) if start else 0.0)
@@ -101,7 +100,7 @@ def setting(extreme: Extreme, law: str) -> Setting:
     )
 
 
-def _with_adhesion(x: Experiment, p: Prediction, law: JKR) -> Setting:
+def _with_adhesion(x: Experiment, p: Prediction) -> Setting:
     return Setting(
         x,
         None,
@@ -112,7 +111,7 @@ def _with_adhesion(x: Experiment, p: Prediction, law: JKR) -> Setting:
         float(stability_limit(x, float(p.overlap_max[0]))),
         float(p.contact_time[0]),
         float(p.strain[0]),
-        lambda peak: adhesion.lost_work(law, peak),
+        x.theory().lost_work,
     )
 
 
