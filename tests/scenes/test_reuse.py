@@ -17,7 +17,7 @@ from epdem.studies.sweep import run as sweeps
 
 HOSTS = [
     pytest.param("liggghts", marks=pytest.mark.liggghts),
-    pytest.param("yade", marks=pytest.mark.yade("alone")),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
     "lammps",
 ]
 STEEL = (Path(__file__).parents[2] / "cases/steel_wall.toml").read_text()
