@@ -23,8 +23,8 @@ from ..case.sizes import LARGEST_FILE
 from ..case.toml import text_of
 from ..engines.lammps import launcher
 from ..errors import CaseError, EngineError
-from ..impacts.engine import require
 from ..impacts.experiment import experiment
+from ..jobs.engine import require
 from ..laws.library import Array
 from ..laws.strengths import law_named
 from .motion.compare import DEFAULT, engine
