@@ -66,7 +66,8 @@ def data_of(name: str) -> dict:
     _, case, scene, step = RUNS[name]
     data = read_toml(CASES / f"{case}.toml")
     without = {key: value for key, value in data.items() if key != "contact"}
-    return without | {"scene": data["scene"] | scene, "output": OUTPUT, "numerics": {"time_step": step}}
+    law = {"name": "thornton"} if case == "compaction_powder" else data["law"]
+    return without | {"law": law, "scene": data["scene"] | scene, "output": OUTPUT, "numerics": {"time_step": step}}
 
 
 def is_of_run(path: Path, deck: Collection[str]) -> bool:

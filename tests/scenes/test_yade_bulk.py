@@ -29,8 +29,9 @@ POWDER = {"box": '["0.4 mm", "0.4 mm", "0.65 mm"]', "count": "50", "height": '"0
 
 
 def small(name: str, folder: Path, keys: dict[str, str], contact: str | None = None) -> Path:
-    """A shrunk copy of a case; `contact` replaces its section ('' removes it)."""
+    """A shrunk copy of a case, a press with thornton; `contact` replaces its section ('' removes it)."""
     text = (CASES / f"{name}.toml").read_text()
+    text = re.sub(r'"cavity"\n(\w+ = true\n)+', '"thornton"\n', text)
     for key, value in keys.items():
         text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
     if contact is not None:

@@ -24,13 +24,34 @@ NAMED = 3  # spheres that are named one by one
 ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = true"
 MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
+NO_FINITE_STRAIN = 1e6  # the parameter of cavity without finite_strain
+PRESSURES = {  # of lattices, docs/choose.md: E/Y of 30 and 120, relative density up to 0.95
+    "thornton": "0.44 to 0.95",
+    "thornton_ning": "0.44 to 0.95",
+    "cavity": "0.80 to 1.23",
+    "cavity, finite_strain": "0.55 to 0.98",
+}
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    found = filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
+    found = _law(p) + filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
     return found + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+
+
+def _law(p: ScenePlan) -> list[str]:
+    """A law that does not have the pressure of a pressed bed."""
+    if p.model.compaction or not any(bed.solid_height > LOOSE * bed.height for bed in p.beds):
+        return []
+    name = p.model.law
+    strain = name == "cavity" and p.model.parameters["finite_strain"] < NO_FINITE_STRAIN
+    known = PRESSURES.get(f"{name}, finite_strain" if strain else name)
+    text = f"has {known} times the pressure of finite elements" if known else "is not compared with finite elements"
+    return [
+        f"law.name = {name!r}: a bed that is pressed with this law {text} (docs/choose.md, Pressing); take law.name = "
+        "'cavity' with finite_strain = true and compaction = true"
+    ]
 
 
 def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
