@@ -13,7 +13,7 @@ import pytest
 from epdem.case.fields import Material
 from epdem.impacts.experiment import RIGID_PLANE, Experiment, pair_of, sphere
 from epdem.impacts.prediction import predict
-from epdem.laws.strengths import ADHESION, default_numbers, law_named
+from epdem.laws.strengths import ADHESION, default_numbers, find_law
 
 STEEL = Material(young_modulus="208 GPa", poisson_ratio=0.3, density="7850 kg/m^3", yield_stress="300 MPa")
 SOFT = Material(young_modulus="2.8 GPa", poisson_ratio=0.4, density="1140 kg/m^3", yield_stress="70 MPa")
@@ -53,11 +53,11 @@ def same(pair, single, factor=1.0):
 @every_law
 @pytest.mark.parametrize("viscous", [None, 0.9])
 def test_the_theory_of_impacts_is_that_of_the_mirror_image(law, material, viscous):
-    if viscous and law_named(law.split()[0]).adheres:
+    if viscous and find_law(law.split()[0]).adheres:
         pytest.skip("no theory has both adhesion and a dashpot")
     pair, single = (predict(x) for x in images(law, material, viscous))
     columns, other = pair.table(), single.table()
-    if law_named(law.split()[0]).strength is None:
+    if find_law(law.split()[0]).strength is None:
         columns, other = columns.drop(columns="strain"), other.drop(columns="strain")
     for name in columns:
         same(columns[name], other[name], 2.0 if name in TWICE else 1.0)

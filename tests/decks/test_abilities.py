@@ -10,7 +10,7 @@ from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import ENGINES
 from epdem.errors import CaseError
-from epdem.impacts.engine import refuse
+from epdem.impacts.engine import check_plan
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
@@ -41,27 +41,27 @@ def test_an_engine_of_one_rank_refuses_two(name):
     tool = ALL[name]()
     assert tool.ranks == 1
     with pytest.raises(CaseError, match=rf"--ranks 2: engine {name} runs on one rank"):
-        refuse(tool, *planned(), ranks=2)
+        check_plan(tool, *planned(), ranks=2)
 
 
 @pytest.mark.parametrize("name", ["embedded", "liggghts", "yade"])
 def test_a_law_that_an_engine_lacks_is_refused_in_a_sentence(name):
     tool = ALL[name]()
     p, prediction = planned()
-    refuse(tool, p, prediction)
+    check_plan(tool, p, prediction)
     tool.laws = ("hertz",)
     with pytest.raises(CaseError, match=rf"law\.name = 'thornton': engine {name} has hertz only; use another --eng"):
-        refuse(tool, p, prediction)
+        check_plan(tool, p, prediction)
 
 
 def test_lammps_runs_impacts_on_walls_only():
-    refuse(ALL["lammps-mdr"](), *planned())
+    check_plan(ALL["lammps-mdr"](), *planned())
     with pytest.raises(CaseError, match="mdr is compared on walls"):
-        refuse(ALL["lammps-mdr"](), *planned(SPHERES))
+        check_plan(ALL["lammps-mdr"](), *planned(SPHERES))
 
 
 def test_positions_limit_only_engines_that_have_them():
     p, prediction = planned({"speeds": ["1e-13 m/s"]})
-    refuse(ALL["embedded"](), p, prediction)
+    check_plan(ALL["embedded"](), p, prediction)
     with pytest.raises(CaseError, match="not representable by positions"):
-        refuse(ALL["liggghts"](), p, prediction)
+        check_plan(ALL["liggghts"](), p, prediction)

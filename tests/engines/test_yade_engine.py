@@ -19,7 +19,7 @@ from epdem.engines.yade import engine as module
 from epdem.engines.yade import launcher
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
-from epdem.impacts.engine import refuse
+from epdem.impacts.engine import check_plan
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -137,7 +137,7 @@ def test_the_deck_computes_nothing_and_holds_every_digit(tmp_path):
 def test_what_yade_cannot_do_is_refused_before_it_starts():
     p, _ = prepared()
     with pytest.raises(CaseError, match="--ranks 2"):
-        refuse(engine("yade"), p, predict(p.experiment), ranks=2)
+        check_plan(engine("yade"), p, predict(p.experiment), ranks=2)
 
 
 FAKE = {

@@ -73,7 +73,7 @@ class Toy(Backbone):
 
     def __init__(self, *, E_star, R_star, p_y):
         super().__init__(E_star, R_star)
-        (self.p_y,) = self.given(p_y=p_y)
+        (self.p_y,) = self.read_parameters(p_y=p_y)
         self.yield_overlap = self.R_star * (np.pi * self.p_y / (2 * self.E_star)) ** 2
 
     def radius(self, alpha):

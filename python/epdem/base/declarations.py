@@ -90,7 +90,7 @@ def library_path() -> Path:
 
 
 @cache
-def loaded() -> ctypes.CDLL:
+def load_library() -> ctypes.CDLL:
     """The C library, its ABI checked. Raises EngineError."""
     path = library_path()
     lib = ctypes.CDLL(str(path))
@@ -102,7 +102,7 @@ def loaded() -> ctypes.CDLL:
 @cache
 def declarations() -> dict[str, Declaration]:
     """Every law by name, in the order of the register. Raises EngineError without the C library."""
-    text = loaded().epdem_declarations
+    text = load_library().epdem_declarations
     text.restype = ctypes.c_char_p
     laws = {}
     for index, law in enumerate(json.loads(text())):

@@ -53,7 +53,7 @@ def line(text: object) -> str:
     return " ".join(str(text).split()).rstrip("& ")
 
 
-def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
+def prepare(env: Prepared, *, reasons: bool = False) -> Prepared:
     """An environment with our filters and names.
 
     `why("...")` in a template is the reason of its line: with `reasons` it follows the line after REASON, else it is
@@ -69,9 +69,9 @@ def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
 
 @cache  # with its templates, which take far longer to read than to fill
 def environment(*, reasons: bool = False) -> jinja2.Environment:
-    """The environment of our templates; `reasons` as in `prepared`."""
+    """The environment of our templates; `reasons` as in `prepare`."""
     loader = jinja2.FileSystemLoader(paths.beside("templates"))
-    return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
+    return prepare(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
-from ..laws.strengths import ADHESION, LawNumbers, law_named
+from ..laws.strengths import ADHESION, LawNumbers, find_law
 from ..theory.cavity import FINITE_STRAIN
 from .fields import LawChoice, Material
 from .messages import cut_quotes
@@ -38,7 +38,7 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     finite_strain = true or false stands for its number, meyer_index = 2 + x for hardening_exponent = x.
     compaction = true or false belongs to the laws that declare it.
     """
-    law = law_named(name)
+    law = find_law(name)
     compaction = given.get("compaction", False)
     if not isinstance(compaction, bool):
         raise CaseError(f"law.compaction = {compaction!r}: it is true or false")
@@ -81,7 +81,7 @@ def check_law(law: LawChoice, materials: Mapping[str, Material], place: object) 
         for name, m in materials.items():
             own = "hardness" if m.hardness is not None else "yield_ratio" if m.yield_ratio is not None else ""
             if own and numbers.absolute is not None:
-                key = law_named(law.name).strength
+                key = find_law(law.name).strength
                 raise CaseError(f"both law.{key} and materials.{name}.{own} are given, each the strength; keep one")
     except CaseError as error:
         raise CaseError(f"{place}: {cut_quotes(str(error))}") from None

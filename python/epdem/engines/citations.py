@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from ..base import __version__
 from ..case.impact import Case
 from ..case.scene import SceneCase
-from ..laws.strengths import law_named
+from ..laws.strengths import find_law
 from ..theory.sources import CHAPTER, SOURCES, Source
 from . import ENGINES
 
@@ -41,4 +41,4 @@ def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str
 
 def of_laws(laws: Sequence[str]) -> dict[str, Source]:
     """The sources of laws, by law and short name."""
-    return {f"law {law}, {name}": SOURCES[name] for law in laws for name in law_named(law).sources}
+    return {f"law {law}, {name}": SOURCES[name] for law in laws for name in find_law(law).sources}

@@ -63,7 +63,7 @@ class Embedded:
 
 
 def numbers(plan: Plan) -> ImpactNumbers:
-    """What the impacts of a plan have in common, as the C library takes it."""
+    """Common numbers of the impacts of a plan for the C library."""
     x = plan.experiment
     return {
         "R_star": x.R_star,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What LIGGGHTS, YADE and LAMMPS have in common as engines: a deck in a folder, of impacts or of a scene."""
+"""Base of LIGGGHTS, YADE and LAMMPS as engines: a deck in a folder, of impacts or of a scene."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection

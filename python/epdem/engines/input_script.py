@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the input scripts of LIGGGHTS and LAMMPS have in common: atom types, data files, ids, skin, loads, stops."""
+"""Common parts of the input scripts of LIGGGHTS and LAMMPS: atom types, data files, ids, skin, loads, stops."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -113,7 +113,7 @@ def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
 
 
 def row_words(p: ScenePlan) -> Iterator[str]:
-    """What the rows hold beside the strain: columns of kinds; of walls three components of the force, of meshes six."""
+    """Words of the rows beside the strain: columns of kinds; of walls three components of the force, of meshes six."""
     yield from (f"f_{word}" for word, column in log.ROWS.items() if column in p.row_columns)
     for n, name in enumerate(p.loads, 1):
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))

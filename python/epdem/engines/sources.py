@@ -20,7 +20,7 @@ def _licences() -> dict[Path, Path]:
 
 
 def yade_commands(folder: Path) -> list[str]:
-    """What builds the module, and where YADE finds it."""
+    """Commands that build the module, and the place where YADE finds it."""
     return [
         f"cmake -S {folder} -B {folder}/build -DYADE_SOURCE=/path/to/yade  # without YADE_SOURCE the tag is cloned",
         f"cmake --build {folder}/build",
@@ -40,7 +40,7 @@ def lammps() -> dict[Path, Path]:
 
 
 def lammps_commands(folder: Path) -> list[str]:
-    """What builds the plugin, and where LAMMPS finds it."""
+    """Commands that build the plugin, and the place where LAMMPS finds it."""
     return [
         f"cmake -S {folder} -B {folder}/build -DLAMMPS_SOURCE_DIR=/path/to/lammps/src",
         f"cmake --build {folder}/build",

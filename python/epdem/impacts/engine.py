@@ -52,7 +52,7 @@ def check_features(tool: ImpactEngine, x: Experiment) -> None:
         )
 
 
-def refuse(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
+def check_plan(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
     """Raise CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
 
     `prediction` belongs to the plan's experiment.

@@ -16,7 +16,7 @@ from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
 from ..laws.library import Law
-from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
+from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, find_law
 from ..theory import law as theory_law
 from ..theory import pair
 from ..theory.backbones import ADHESIVE, LAWS, Backbone
@@ -105,7 +105,7 @@ class Experiment:
             raise CaseError(f"{given}: {error}") from None
 
     def friction_of_oblique(self) -> Oblique:
-        """What oblique impacts have. Raises CaseError for normal ones."""
+        """Angles, spins and friction of oblique impacts. Raises CaseError for normal ones."""
         if self.oblique is None:
             raise CaseError("these impacts are normal; give impact.angles")
         return self.oblique
@@ -170,13 +170,13 @@ def strain_rate(speed: Real, a: Real, *, share: float) -> Real:
     return 0.2 * share * speed / a
 
 
-def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
+def apply_rate(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
     """The law with its strengths at the strain rate of an impact at `speed` [m/s], `strain_rate` at its largest a.
 
     One strength serves all speeds of a case: the rate belongs to the
     median speed, and a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
     """
-    if law_named(spec.name).strength is None:
+    if find_law(spec.name).strength is None:
         return spec
     E_star = float(pair.E_star(body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio))
     R_star, m_star = float(pair.R_star(body.radius, target.radius)), float(pair.m_star(body.mass, target.mass))
@@ -210,11 +210,11 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     speed, angle, spin = case.impact.rows()
     numbers = law_numbers(case.law.name, case.law.parameters())
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
-        numbers = replace(default_numbers(law), adhesion=numbers.adhesion if law_named(law).adheres else None)
+        numbers = replace(default_numbers(law), adhesion=numbers.adhesion if find_law(law).adheres else None)
     spec = pair_of(numbers, body, target)
     if case.rate:
         speeds = sorted(case.impact.speed_values())
-        spec = rated(spec, case.rate, body, target, float(speeds[len(speeds) // 2]))
+        spec = apply_rate(spec, case.rate, body, target, float(speeds[len(speeds) // 2]))
     return Experiment(
         law=spec,
         body=body,

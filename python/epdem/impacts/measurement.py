@@ -126,7 +126,7 @@ def _with_adhesion(plan: Plan, path: Trajectory) -> Measured:
     )
 
 
-def chosen(plan: Plan, path: Trajectory) -> pd.DataFrame:
+def sample_impacts(plan: Plan, path: Trajectory) -> pd.DataFrame:
     """speed [m/s], time [s] since first touch, overlap [m], force [N] of the first phase at the chosen speeds.
 
     From the sample before the contact to that after it; at most 2 SAMPLES a speed.

@@ -31,7 +31,7 @@ class Reference:
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundStep:
     """A time step [s] with what it reaches: `error` is the largest relative error of e_n, `rms` their mean square."""
 
     time_step: float
@@ -106,7 +106,7 @@ def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, 
     return np.where(ended.reshape(gap.shape) & np.isfinite(error), error, np.inf)
 
 
-def search(x: Experiment, prediction: Prediction, target: float) -> Found:
+def search(x: Experiment, prediction: Prediction, target: float) -> FoundStep:
     """The largest step below which every step tried keeps e_n within `target` (relative, all speeds and phases).
 
     Raises CaseError if no step down to MOST_STEPS in contact reaches the target.
@@ -126,7 +126,7 @@ def search(x: Experiment, prediction: Prediction, target: float) -> Found:
             # far off, half of the reduction expected from second order can be skipped
             rungs = max(1, int(np.log2(worst / target))) if np.isfinite(worst) else 1
         elif last is None:
-            last = Found(dt, worst, float(np.sqrt((errors**2).mean())), target, ref.contact / dt, ref)
+            last = FoundStep(dt, worst, float(np.sqrt((errors**2).mean())), target, ref.contact / dt, ref)
         elif last.time_step > 1.9 * dt:  # a factor of two of good steps below it is evidence
             return last
         dt /= LADDER**rungs

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..laws.strengths import law_named
+from ..laws.strengths import find_law
 from ..theory import validity
 from . import oblique
 from .experiment import Experiment, strain_rate
@@ -128,6 +128,6 @@ def _turning(x: Experiment, contact_time: np.ndarray) -> list[str]:
 def _softer(x: Experiment) -> tuple[str, ...]:
     """The materials of the smaller strength, or the key of the strength of all bodies."""
     if x.law.common:
-        return (f"law.{law_named(x.law.name).strength}",)
+        return (f"law.{find_law(x.law.name).strength}",)
     bodies = zip((x.body, x.target), x.law.strengths, strict=True)
     return tuple(dict.fromkeys(b.material for b, strength in bodies if strength == min(x.law.strengths)))

@@ -108,7 +108,7 @@ def yielding(prediction: Prediction) -> str:
     return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
 
 
-def chosen(outcome: Outcome, full: bool) -> pd.DataFrame:
+def select_rows(outcome: Outcome, full: bool) -> pd.DataFrame:
     """The printed rows: all, or FEW impacts over the whole range of every engine and law."""
     rows = outcome.results.comparison
     place = rows.groupby(["law", "engine"]).cumcount()
@@ -119,7 +119,7 @@ def chosen(outcome: Outcome, full: bool) -> pd.DataFrame:
 
 def run_table(outcome: Outcome, *, full: bool = False) -> Table:
     """One row per speed and engine, and per angle and spin of oblique impacts; FEW of them unless `full`."""
-    rows = chosen(outcome, full)
+    rows = select_rows(outcome, full)
     rows = rows.assign(ok=np.where(rows["passed"], "yes", "NO"))
     title, order = outcome.case.case.title, ["law", "speed", "engine"]
     if outcome.case.impact.oblique:
@@ -146,7 +146,7 @@ def _with_regimes(outcome: Outcome, rows: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def worst(outcome: Outcome) -> list[str]:
+def largest_errors(outcome: Outcome) -> list[str]:
     """One line for every engine and law: its largest errors, and how many rows are outside tolerance."""
     lines = []
     rows = outcome.results.comparison
@@ -190,11 +190,11 @@ def against_measured(outcome: Outcome) -> list[str]:
 
 def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     """Print table, warnings and summary."""
-    shown, rows = chosen(outcome, full), outcome.results.comparison
+    shown, rows = select_rows(outcome, full), outcome.results.comparison
     show_table(console, run_table(outcome, full=full))
     if len(shown) < len(rows):
         console.print(f"{len(shown)} of {len(rows)} rows; --full prints all")
-    for line in [*worst(outcome), *against_measured(outcome)]:
+    for line in [*largest_errors(outcome), *against_measured(outcome)]:
         console.print(line, soft_wrap=True)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow")

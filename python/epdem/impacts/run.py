@@ -20,9 +20,9 @@ from ..jobs.engine import Feature, require
 from ..jobs.stage import Inputs, Stage, Tables, compute
 from . import store
 from .comparison import compare, impacts_table
-from .engine import ImpactEngine, Trajectory, refuse
+from .engine import ImpactEngine, Trajectory, check_plan
 from .experiment import Experiment, experiment
-from .measurement import chosen, measure
+from .measurement import measure, sample_impacts
 from .plan import Plan, plan
 from .prediction import Prediction, predict
 
@@ -57,7 +57,7 @@ def run_plan(
     """
 
     def read(path: Trajectory) -> tuple[Tables, dict[str, float]]:
-        tables = {"impacts": impacts_table(p, measure(p, path)), "paths": chosen(p, path)}
+        tables = {"impacts": impacts_table(p, measure(p, path)), "paths": sample_impacts(p, path)}
         return tables, {f"seconds_{name}": seconds for name, seconds in path.seconds.items()}
 
     return compute(tool, p, folder, read, version=version, facts=_facts(p), ranks=ranks, stored=stored)
@@ -156,7 +156,7 @@ def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Seq
         plans = [plan(x, predictions[x.law.name]) for x in experiments]
         for p in plans:
             for tool in tools:
-                refuse(tool, p, predictions[p.experiment.law.name], ranks=ranks)
+                check_plan(tool, p, predictions[p.experiment.law.name], ranks=ranks)
     steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
     how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)

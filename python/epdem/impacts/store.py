@@ -12,7 +12,7 @@ from .comparison import UNITS
 
 @dataclass
 class Results:
-    """What a run leaves. Tables are DataFrames, keyed "law/engine" (impacts, paths) or "law" (predictions).
+    """Results of a run. Tables are DataFrames, keyed "law/engine" (impacts, paths) or "law" (predictions).
 
     attributes: of the file (case name, versions); runs: of each law/engine (hash of its inputs, seconds).
     """

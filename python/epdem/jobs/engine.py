@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from ..errors import CaseError, EngineError
-from ..laws.strengths import law_named
+from ..laws.strengths import find_law
 from ..theory.sources import Source
 
 
@@ -89,7 +89,7 @@ def require(*tools: Tool) -> None:
 def has_law(tool: Tool, law: str) -> bool:
     """Whether an engine has a law of epdem."""
     named = tool.laws is None or law in tool.laws
-    return named and (Feature.ADHESION in tool.features or not law_named(law).adheres)
+    return named and (Feature.ADHESION in tool.features or not find_law(law).adheres)
 
 
 def check_law(tool: Tool, law: str) -> None:

@@ -13,7 +13,7 @@ from typing import Any, NotRequired, TypedDict, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..base.declarations import declarations, library_path, loaded
+from ..base.declarations import declarations, library_path, load_library
 from ..errors import CaseError, EngineError
 
 Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
@@ -55,7 +55,7 @@ _SIGNATURES = {
 @cache
 def library() -> ctypes.CDLL:
     """The loaded library, its signatures declared and its ABI checked."""
-    lib = loaded()
+    lib = load_library()
     for name, (restype, argtypes) in _SIGNATURES.items():
         function = getattr(lib, name)
         function.restype, function.argtypes = restype, argtypes

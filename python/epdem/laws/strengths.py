@@ -19,8 +19,8 @@ ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
 LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
 
 
-def law_named(name: str) -> Declaration:
-    """What the law of that name declares. Raises CaseError."""
+def find_law(name: str) -> Declaration:
+    """Declaration of the law of that name. Raises CaseError."""
     if name not in declarations():
         raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(declarations())}")
     return declarations()[name]
@@ -28,7 +28,7 @@ def law_named(name: str) -> Declaration:
 
 def yields_by_stress(name: str) -> bool:
     """Whether the strength of a law is the yield stress itself, not a contact pressure. Raises CaseError."""
-    return law_named(name).strength == "yield_stress"
+    return find_law(name).strength == "yield_stress"
 
 
 class Solid(Protocol):
@@ -56,7 +56,7 @@ class Surface:
 
 def own_ratios(name: str, parameters: Mapping[str, float]) -> dict[str, float]:
     """The dimensionless ones of a law's parameters that differ from its defaults, by the law's own names."""
-    known = law_named(name).parameters
+    known = find_law(name).parameters
     return {p.name: parameters[p.name] for p in known if p.unit == "1" and parameters[p.name] != p.default}
 
 
@@ -94,12 +94,12 @@ class LawSpec:
 
     @property
     def _numbers(self) -> dict[str, Any]:
-        symbols = law_named(self.name).symbols
+        symbols = find_law(self.name).symbols
         return {symbols[name]: x for name, x in self.parameters.items()}
 
     def of(self, body: float, target: float) -> "LawSpec":
         """The same law for two bodies of these strengths [Pa]."""
-        strength = law_named(self.name).strength
+        strength = find_law(self.name).strength
         own = {} if strength is None else {strength: min(body, target)}
         return replace(self, parameters=self.parameters | own, strengths=(body, target))
 
@@ -114,7 +114,7 @@ class LawSpec:
     @property
     def adheres(self) -> bool:
         """Whether bodies attract each other."""
-        return law_named(self.name).adheres
+        return find_law(self.name).adheres
 
     def ratios(self) -> dict[str, float]:
         """The dimensionless parameters that differ from the law's defaults."""
@@ -144,7 +144,7 @@ class LawNumbers:
         of the material gives. Raises CaseError if the material has none of them.
         """
         yield_stress = solid.yield_stress
-        name = law_named(self.name).strength
+        name = find_law(self.name).strength
         if name is None or yield_stress == math.inf:
             return math.inf
         if own is not None:
@@ -169,7 +169,7 @@ class LawNumbers:
         Raises CaseError if it does not follow from what is given, or if more is given than the law takes.
         """
         given = [s for s in (body, target) if s.energy is not None]
-        if not law_named(self.name).adheres:
+        if not find_law(self.name).adheres:
             if wrong := next((s for s in given if s.energy), None):
                 adhesive = [law for law in declarations().values() if law.adheres]
                 own = [law.name for law in adhesive if law.without_adhesion == self.name]
@@ -202,7 +202,7 @@ class LawNumbers:
 
 def default_numbers(name: str) -> LawNumbers:
     """The law `name` with its default parameters. Raises CaseError for a law that does not exist."""
-    law = law_named(name)
+    law = find_law(name)
     ratios = {p.name: p.default for p in law.parameters if p.default is not None}
     return LawNumbers(name, ratios, None, law.default_ratio)
 
@@ -233,7 +233,7 @@ def strength_of_hardness(law: LawNumbers, test: Indentation, solid: Solid, sourc
 
     if not too_soft(LEAST_STRENGTH * plane):
         raise CaseError(
-            f"{source}: no {law_named(law.name).strength} above {LEAST_STRENGTH:g} of E* = {plane:.3g} Pa gives "
+            f"{source}: no {find_law(law.name).strength} above {LEAST_STRENGTH:g} of E* = {plane:.3g} Pa gives "
             f"{test.pressure:.3g} Pa with these parameters of {law.name}; lower law.hardening_exponent"
         )
     return float(bisect(too_soft, LEAST_STRENGTH * plane, 2.0 * test.pressure, steps=80)[1])
@@ -257,5 +257,5 @@ def yield_ratio_of(law: LawNumbers, strength: float, solid: Solid) -> float:
 
 def _alone(law: LawNumbers, strength: float, modulus: float) -> Backbone:
     """The law without adhesion at R* = 1, of two bodies of this strength [Pa] and E* = `modulus` [Pa]."""
-    dry = law_named(law.name).without_adhesion or law.name  # attraction plays no part in the strength
+    dry = find_law(law.name).without_adhesion or law.name  # attraction plays no part in the strength
     return replace(law, name=dry, absolute=strength).pair(strength, strength).backbone(E_star=modulus, R_star=1.0)

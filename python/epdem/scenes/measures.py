@@ -214,7 +214,7 @@ def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
 
 
 def values_of(p: ScenePlan, m: Histogram, tables: dict[str, pd.DataFrame]) -> FloatArray:
-    """What a histogram counts: the plastic work of each sphere in the last frame [J], or the impact speeds [m/s]."""
+    """Values of a histogram: the plastic work of each sphere in the last frame [J], or the impact speeds [m/s]."""
     if m.kind == "impact_speed":
         return _impact_speeds(p, tables)
     return np.asarray(last_frame(tables["particles"])["plastic_work"], float)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the contacts of a scene consist of, neutral of engines: the law of each pair, types, friction, sub-models."""
+"""Contact model of a scene, neutral of engines: the law of each pair, types, friction, sub-models."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from ..case.law import law_numbers
 from ..case.scene import Rolling, SceneCase
 from ..case.units import read_number
 from ..errors import CaseError
-from ..laws.strengths import LawNumbers, LawSpec, Surface, law_named, own_ratios
+from ..laws.strengths import LawNumbers, LawSpec, Surface, find_law, own_ratios
 from ..theory.pair import E_star
 
 WALL = "wall"
@@ -28,7 +28,7 @@ class Type:
 
 @dataclass(frozen=True)
 class Model:
-    """What a contact is made of; numbers of types begin at 1.
+    """Contact model; numbers of types begin at 1.
 
     parameters: dimensionless parameters of the law. wall_types: the type of each wall material; the key "" stands for
     the material of the scene's walls. friction: of each pair of types, by the model `tangential`. viscous: restitution
@@ -161,7 +161,7 @@ def _friction(case: SceneCase, a: Type, b: Type) -> float:
 
 
 def _own(case: SceneCase, a: Type, b: Type, value: str) -> float | None:
-    """What [contact] pairs gives for a pair of types; a wall goes by "wall", or by a material that is of walls only."""
+    """Friction of a pair of types by [contact] pairs; a wall goes by "wall", or by a material that is of walls only."""
     spheres = _materials_used(case)
 
     def names(t: Type) -> set[str]:
@@ -186,7 +186,7 @@ def strengths(case: SceneCase) -> dict[str, float]:
     The key of the material, else the value of the law for all.
     """
     law = numbers(case)
-    strength = law_named(law.name).strength
+    strength = find_law(law.name).strength
     strengths = {}
     for name, material in case.materials.items():
         extra = dict(material.model_extra or {})

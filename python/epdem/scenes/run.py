@@ -31,7 +31,7 @@ Progress = Callable[[int, int], None]  # (step, steps of the run)
 
 @dataclass
 class SceneOutcome:
-    """What a run gives its caller."""
+    """Outcome of a scene run."""
 
     plan: ScenePlan
     folder: Path

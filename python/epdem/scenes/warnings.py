@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene probably does not mean, before its run and after it, and what it has lost: sentences for warnings."""
+"""Warnings of a scene before and after its run: probable mistakes and lost spheres, in sentences."""
 
 import math
 

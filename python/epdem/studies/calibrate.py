@@ -16,9 +16,9 @@ from ..case.law import law_numbers
 from ..case.toml import named, text_of
 from ..case.units import to_si
 from ..errors import CaseError
-from ..impacts.experiment import Body, Experiment, bodies, pair_of, rated
+from ..impacts.experiment import Body, Experiment, apply_rate, bodies, pair_of
 from ..impacts.prediction import predict
-from ..laws.strengths import LEAST_STRENGTH, LawNumbers, law_named, strength_of_hardness
+from ..laws.strengths import LEAST_STRENGTH, LawNumbers, find_law, strength_of_hardness
 from ..theory.backbones import Backbone
 from ..theory.indentation import KGF_PER_MM2, PYRAMID, VICKERS, Indentation
 from ..theory.numerics import bisect
@@ -96,7 +96,7 @@ class _Uncalibrated:
         body, target = bodies(self.case)
         spec = pair_of(replace(self.law, absolute=strength), body, target)
         if self.case.rate:
-            spec = rated(spec, self.case.rate, body, target, sorted(speeds)[len(speeds) // 2])
+            spec = apply_rate(spec, self.case.rate, body, target, sorted(speeds)[len(speeds) // 2])
         viscous = self.case.viscous.restitution if self.case.viscous else None
         return Experiment(spec, body, target, np.array(speeds), viscous, rated=self.case.rate is not None)
 
@@ -108,7 +108,7 @@ class _Uncalibrated:
         """The calibration with this strength [Pa]."""
         x = self.experiment(strength, speed or 1.0)
         e_n = float(predict(x).e_n[0]) if speed else None
-        stress = strength / law_named(self.law.name).default_ratio
+        stress = strength / find_law(self.law.name).default_ratio
         yield_speed = float(x.theory().yield_speed(m_star=x.m_star))
         return Calibration(self.law.name, self.parameter, strength, stress, yield_speed, e_n, speed, source)
 
@@ -116,7 +116,7 @@ class _Uncalibrated:
 def _uncalibrated(path: Path) -> _Uncalibrated:
     case = load(path)
     with named(path):
-        parameter = law_named(case.law.name).strength
+        parameter = find_law(case.law.name).strength
     if parameter is None:
         raise CaseError(f"{path}: law {case.law.name} never yields; it has nothing to calibrate")
     given = {k: v for k, v in case.law.parameters().items() if k not in (parameter, f"{parameter}_ratio")}
@@ -189,7 +189,7 @@ def from_indentation(path: Path, curve: Path) -> Calibration:
     def branch(logarithm: float) -> Backbone:
         x = uncalibrated.experiment(math.exp(logarithm), 1.0)
         if x.law.adheres:
-            dry = law_named(uncalibrated.law.name).without_adhesion
+            dry = find_law(uncalibrated.law.name).without_adhesion
             raise CaseError(f"{path}: an indentation curve has no adhesion here; take law.name = {dry!r}")
         return x.backbone()
 

@@ -23,9 +23,9 @@ from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
 from ..impacts.plan import Plan
 from ..impacts.prediction import predict
-from ..impacts.report import against_measured, mark, worst, yielding
+from ..impacts.report import against_measured, largest_errors, mark, yielding
 from ..impacts.run import Outcome
-from ..laws.strengths import law_named
+from ..laws.strengths import find_law
 from ..report.chart import INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ..scenes.columns import STRAINS, units
@@ -188,7 +188,7 @@ def impacts_sentences(outcome: Outcome) -> list[str]:
             f"{p.time_step:.4g} s; {yielding(prediction)}. e_n of theory goes from {prediction.e_n.max():.4f} to "
             f"{prediction.e_n.min():.4f}."
         )
-    said += [f"Engine {line}." for line in worst(outcome)]
+    said += [f"Engine {line}." for line in largest_errors(outcome)]
     said += [line[0].upper() + line[1:] + "." for line in against_measured(outcome)]
     residual = rows["energy_residual"].abs().max()
     if residual == residual:
@@ -212,7 +212,7 @@ def impacts_table(outcome: Outcome) -> Rows:
 
 def _impact_facts(x: Experiment) -> dict[str, str]:
     facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
-    units = {p.name: p.unit for p in law_named(x.law.name).parameters if p.unit != "1"}
+    units = {p.name: p.unit for p in find_law(x.law.name).parameters if p.unit != "1"}
     facts |= {name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in x.law.parameters.items()}
     facts |= {"E*": f"{x.E_star:.6g} Pa", "R*": f"{x.R_star:.6g} m", "m*": f"{x.m_star:.6g} kg"}
     v_y0 = charts.first_yield(x)

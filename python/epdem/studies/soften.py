@@ -31,7 +31,7 @@ from ..case.impact import Rate
 from ..case.law import law_numbers
 from ..case.toml import named, read_toml, text_for_anywhere, text_of, with_library
 from ..errors import CaseError
-from ..laws.strengths import ADHESION, law_named, yield_ratio_of
+from ..laws.strengths import ADHESION, find_law, yield_ratio_of
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
 from ..theory.validity import SMALL_DEFORMATION
 
@@ -87,7 +87,7 @@ def _forces(data: dict[str, Any]) -> Iterator[tuple[Key, str]]:
 
 def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]:
     law = data["law"]
-    strength = law_named(law["name"]).strength
+    strength = find_law(law["name"]).strength
     texts: dict[Key, str | float] = {}
     for name, material in data["materials"].items():
         texts["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
@@ -107,7 +107,7 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
         texts["law", ADHESION] = _scaled(law[ADHESION], factor**-ADHESION_POWER)
     if strength and strength in law:
         texts["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
-    none = {p.name: p.default for p in law_named(law["name"]).parameters}.get("finite_strain")
+    none = {p.name: p.default for p in find_law(law["name"]).parameters}.get("finite_strain")
     if none and (strain := law.get("finite_strain", False)) and strain < none:
         strain = FINITE_STRAIN if strain is True else strain
         texts["law", "finite_strain"] = strain * factor ** (STRAIN_POWER * STRAIN_EXPONENT)
@@ -143,7 +143,7 @@ def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
         return predict(experiment(impacts.parse(data, path)))
     case = scenes.parse(data, path)
     with named(path):
-        law_named(case.law.name)
+        find_law(case.law.name)
     return predict(leading_impact(case))
 
 

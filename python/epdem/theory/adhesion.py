@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import restitution as plain
+from . import restitution
 from .adhesive_curve import AdhesiveCurve, Numbers, Path
 from .numerics import bisect, gauss, number
 
@@ -24,7 +24,7 @@ _T, _TW = gauss(8)  # exact for the works below
 
 
 @dataclass(frozen=True)
-class Impact(plain.Impact):
+class AdhesiveImpact(restitution.Impact):
     """As without adhesion; bodies that stick have e_n = 0, contact_time = inf and work_out = 0.
 
     residual_overlap is the dent alpha_p, from which the opening contact counts its overlap; the contact ends below it,
@@ -152,7 +152,7 @@ def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numb
     return np.where(e_n(law, m_star=m, speed=v) > 0, time + back, np.inf)
 
 
-def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Impact:
+def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> AdhesiveImpact:
     """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
     like = law.E_star * law.R_star * law.Gamma * law.yield_radius
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), like)
@@ -178,7 +178,7 @@ def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Impact:
         "pull_max": branch.pull_off_force,
         "adhesive_work": adhesive,
     }
-    return Impact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
+    return AdhesiveImpact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
 
 
 def tabor_number(law: AdhesiveCurve, *, z_0: Numbers = 0.2e-9) -> Numbers:

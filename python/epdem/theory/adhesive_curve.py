@@ -29,7 +29,7 @@ class AdhesiveCurve(Declared):
 
     def __init__(self, *, E_star: Numbers, R_star: Numbers, Gamma: Numbers) -> None:
         self.E_star, self.R_star = number("E_star", E_star), number("R_star", R_star)
-        (self.Gamma,) = self.given(Gamma=Gamma)
+        (self.Gamma,) = self.read_parameters(Gamma=Gamma)
         self.c = np.sqrt(2 * np.pi * self.Gamma / self.E_star)
         self.yield_radius: Numbers = np.inf  # contact radius at which the contact yields [m]
 

@@ -41,8 +41,8 @@ class Cavity(Backbone):
         share: Real = 1.0,
     ):
         super().__init__(E_star, R_star)
-        (none,) = self.given(c_strain=None)  # so large a number that nothing changes
-        self.Y, self.c_Y, self.c_P, self.c_strain = self.given(Y=Y, c_Y=c_Y, c_P=c_P, c_strain=c_strain)
+        (none,) = self.read_parameters(c_strain=None)  # so large a number that nothing changes
+        self.Y, self.c_Y, self.c_P, self.c_strain = self.read_parameters(Y=Y, c_Y=c_Y, c_P=c_P, c_strain=c_strain)
         self.share = number("share", share, low=0.5, high=1.0, low_ok=True)
         self.softens = bool(np.any(self.c_strain < none))
         self.cut = np.where(self.c_strain < none, self.share**2 / 2, 0.0)

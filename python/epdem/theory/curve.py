@@ -17,10 +17,10 @@ class Declared:
 
     @classmethod
     def declaration(cls) -> Declaration:
-        """What the law declares of itself."""
+        """Declaration of the law."""
         return declarations()[cls.name]
 
-    def given(self, **values: Real | None) -> tuple[Real, ...]:
+    def read_parameters(self, **values: Real | None) -> tuple[Real, ...]:
         """Parameters by their symbols, each its default if it is None. ValueError outside of their ranges."""
         known = {p.symbol: p for p in self.declaration().parameters}
         numbers = []

@@ -20,7 +20,7 @@ class Johnson(Backbone):
 
     def __init__(self, *, E_star: Real, R_star: Real, p_m: Real):
         super().__init__(E_star, R_star)
-        (self.p_m,) = self.given(p_m=p_m)
+        (self.p_m,) = self.read_parameters(p_m=p_m)
         self.yield_overlap = self.R_star * (3 * np.pi * self.p_m / (2 * self.E_star)) ** 2
 
     def force(self, alpha: Real) -> Real:

@@ -20,7 +20,7 @@ class Meyer(Backbone):
 
     def __init__(self, *, E_star: Real, R_star: Real, p_y: Real, x: Real | None = None):
         super().__init__(E_star, R_star)
-        self.p_y, self.x = self.given(p_y=p_y, x=x)
+        self.p_y, self.x = self.read_parameters(p_y=p_y, x=x)
         self.yield_overlap = self.R_star * (np.pi * self.p_y / (2 * self.E_star)) ** 2
         self._F_y, self._W_y = self._hertz_force(self.yield_overlap), self._hertz_work(self.yield_overlap)
 

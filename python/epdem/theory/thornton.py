@@ -17,7 +17,7 @@ class Thornton(Backbone):
 
     def __init__(self, *, E_star: Real, R_star: Real, p_y: Real):
         super().__init__(E_star, R_star)
-        (self.p_y,) = self.given(p_y=p_y)
+        (self.p_y,) = self.read_parameters(p_y=p_y)
         self.yield_overlap = self.R_star * (np.pi * self.p_y / (2 * self.E_star)) ** 2
 
     def force(self, alpha: Real) -> Real:

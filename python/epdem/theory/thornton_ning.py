@@ -24,7 +24,7 @@ class ThorntonNing(JKR):
 
     def __init__(self, *, E_star: Numbers, R_star: Numbers, Gamma: Numbers, p_y: Numbers) -> None:
         super().__init__(E_star=E_star, R_star=R_star, Gamma=Gamma)
-        (self.p_y,) = self.given(p_y=p_y)
+        (self.p_y,) = self.read_parameters(p_y=p_y)
         self._A = 2 * self.E_star / (np.pi * self.R_star)  # A = _A y^2
         self._B = np.sqrt(2 * self.Gamma * self.E_star / np.pi)  # B = _B/y
         self.yield_radius = self._yield_root() ** 2

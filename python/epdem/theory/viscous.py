@@ -26,7 +26,7 @@ _X, _W = gauss(32)
 
 
 @dataclass(frozen=True)
-class Impact(undamped.Impact):
+class DampedImpact(undamped.Impact):
     """As without a dashpot, but force_max and residual_overlap are those of the total force with the dashpot."""
 
     viscous_work: Array  # lost beside plastic_work [J]: to the dashpot, or still stored when the bodies part
@@ -142,7 +142,7 @@ def _unload(law: Curve, top: Array, L: Array, V: Array, m: Array, dashpot: float
     return _first_zero(rate, path, loaded)
 
 
-def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Impact:
+def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> DampedImpact:
     """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
 
     restitution in [0.14, 1] is that of impacts that do not yield. Raises ValueError for values outside.
@@ -151,7 +151,7 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Impa
     m, v = np.broadcast_arrays(number("m_star", m_star), number("speed", speed))
     plain = undamped.impact(law, m_star=m, speed=v)
     if zeta == 0.0:
-        return Impact(**{f.name: getattr(plain, f.name) for f in fields(plain)}, viscous_work=np.zeros(v.shape))
+        return DampedImpact(**{f.name: getattr(plain, f.name) for f in fields(plain)}, viscous_work=np.zeros(v.shape))
     shape, m, v = v.shape, m.ravel(), v.ravel()
     dashpot, W = 2 * np.sqrt(5 / 6) * zeta, 0.5 * m * v * v
 
@@ -187,4 +187,4 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Impa
         "plastic_work": W_plastic,
         "viscous_work": W - work_out - W_plastic,
     }
-    return Impact(**{name: np.reshape(column, shape) for name, column in columns.items()})
+    return DampedImpact(**{name: np.reshape(column, shape) for name, column in columns.items()})

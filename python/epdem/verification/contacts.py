@@ -26,7 +26,7 @@ from ..errors import CaseError, EngineError
 from ..impacts.experiment import experiment
 from ..jobs.engine import require
 from ..laws.library import Array
-from ..laws.strengths import law_named
+from ..laws.strengths import find_law
 from .motion.compare import DEFAULT, engine
 from .motion.prescribed import Loads, Motion, MotionEngine, Touch, columns_of, read
 
@@ -68,7 +68,7 @@ class ContactTest:
         """The spheres, law and friction that pair_coeff and the variables name. Raises CaseError."""
         (line,) = self.lines("pair_coeff")
         law, E, nu, *words = Template(line).safe_substitute(self.variables).split()[2:]
-        declared = law_named(law).parameters
+        declared = find_law(law).parameters
         options = words[len(declared) :]
         friction = options.index("tangential") if "tangential" in options else None
         material = {"young_modulus": f"{E} Pa", "poisson_ratio": float(nu)}

@@ -25,7 +25,7 @@ from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
 from ..jobs.engine import require
-from ..laws.strengths import default_numbers, law_named, strength_of_hardness
+from ..laws.strengths import default_numbers, find_law, strength_of_hardness
 from ..studies.calibrate import EXPONENT, hardness_test, specimen
 from .models import engine
 
@@ -100,11 +100,11 @@ def case_of(measured: Measured, material: str, value: float, speeds: Sequence[fl
     path = paths.beside("cases") / measured.head["case"]
     data = read_toml(path)
     data["impact"]["speeds"] = [f"{v!r} m/s" for v in speeds]
-    if measured.given == "hardness" and law_named(law).strength:
+    if measured.given == "hardness" and find_law(law).strength:
         numbers = default_numbers(law)
         body = specimen(*bodies(parse(data, path)))
         value = strength_of_hardness(numbers, hardness_test(vickers=value), body, f"HV {value:g}") / numbers.ratio
-    if measured.given == "yield_stress" or law_named(law).strength:
+    if measured.given == "yield_stress" or find_law(law).strength:
         data["materials"][material]["yield_stress"] = f"{value!r} Pa"
     return parse(data, path)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What pair_coeff and walls name: LAW E nu PARAMETERS and the options of a contact."""
+"""Words of pair_coeff and walls: LAW E nu PARAMETERS and the options of a contact."""
 
 from collections.abc import Mapping
 

@@ -104,7 +104,7 @@ def is_pfm(folder: Path) -> bool:
 
 
 def check(folder: Path) -> list[str]:
-    """What a LIGGGHTS tree lacks to be built with our models: a sentence each, with file, line and what to do.
+    """Missing parts of a LIGGGHTS tree for a build with our models: a sentence each, with file, line and what to do.
 
     `folder` is the tree's `src`. Raises CaseError if it is none, or its contact models have another interface.
     """

@@ -84,7 +84,7 @@ class Executable:
 
 
 def version(path: Path) -> str:
-    """What LIGGGHTS says that it is, as "LIGGGHTS-PUBLIC 3.8.0"; "" if it says nothing. Raises EngineError."""
+    """Name and version of a LIGGGHTS, as "LIGGGHTS-PUBLIC 3.8.0"; "" if it says nothing. Raises EngineError."""
     return _version(_help(path))
 
 
@@ -94,7 +94,7 @@ def writes_vtk(path: Path) -> bool:
 
 
 def examine(path: Path, laws: tuple[str, ...]) -> Executable:
-    """What a LIGGGHTS has, found by one short run for each of `laws`. Raises EngineError if it does not start."""
+    """Parts of a LIGGGHTS, found by one short run for each of `laws`. Raises EngineError if it does not start."""
     text = _help(path)
     return Executable(
         path,

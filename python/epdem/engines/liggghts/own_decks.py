@@ -345,7 +345,7 @@ def _render(template: Path, values: Mapping[str, object]) -> tuple[str, set[str]
     if not template.is_file():
         raise CaseError(f"{template}: there is no such file; name a template")
     loader = jinja2.FileSystemLoader([template.resolve().parent, paths.beside("templates")])
-    environment = rendering.prepared(_Sandbox(loader=loader, **rendering.OPTIONS))
+    environment = rendering.prepare(_Sandbox(loader=loader, **rendering.OPTIONS))
     try:
         text = environment.get_template(template.name).render(values)
         tree = environment.parse(template.read_text(encoding="utf-8"))

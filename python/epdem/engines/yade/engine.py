@@ -111,7 +111,7 @@ class Yade(Host):
         )
 
     def functors(self, x: Experiment) -> Functors | None:
-        """What the functors of epdem_yade are given; None without the module."""
+        """Input of the functors of epdem_yade; None without the module."""
         if not self.classes:
             return None
         declared = declarations()[x.law.name].parameters

@@ -229,7 +229,7 @@ def write_stages(place: Path, stages: dict[str, Stage]) -> None:
 
 
 def read_stages(place: Path) -> dict[str, Stage]:
-    """What `write_stages` stored; nothing of a file that is missing or damaged."""
+    """Stages that `write_stages` stored; none of a file that is missing or damaged."""
     try:
         content = json.loads((place / STAGES).read_text(encoding="utf-8"))
         return {

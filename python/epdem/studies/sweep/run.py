@@ -20,7 +20,7 @@ from ...case.toml import located, named, text_for_anywhere
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.comparison import compare
-from ...impacts.engine import refuse
+from ...impacts.engine import check_plan
 from ...impacts.experiment import Experiment, experiment
 from ...impacts.plan import plan as plan_impacts
 from ...impacts.prediction import predict
@@ -63,7 +63,7 @@ def _check_engines(sweep: Sweep, x: Experiment) -> None:
     prediction = predict(x)
     p = plan_impacts(x, prediction)
     for name in sweep.engines:
-        refuse(engine(name), p, prediction, ranks=sweep.ranks)
+        check_plan(engine(name), p, prediction, ranks=sweep.ranks)
 
 
 def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
@@ -97,7 +97,7 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
         prediction = predict(x)
         p = plan_impacts(x, prediction)
         for tool in map(engine, sweep.engines):
-            refuse(tool, p, prediction, ranks=sweep.ranks)
+            check_plan(tool, p, prediction, ranks=sweep.ranks)
             key, has_deck = f"{x.law.name}/{tool.name}", Feature.DECK in tool.features
             at, version = place / key if has_deck else place, sweep.versions[tool.name]
             stage = run_plan(p, tool, at, ranks=sweep.ranks, version=version, stored=stored.get(key))
