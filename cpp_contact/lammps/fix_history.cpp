@@ -8,6 +8,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "force.h"
 #include "memory.h"
 #include "neigh_list.h"
 
@@ -71,19 +72,30 @@ void FixHistory::open_energies(int atoms) {
     array_atom[i][elastic_energy] = array_atom[i][loaded_contacts] = array_atom[i][friction_energy] = 0.0;
 }
 
-void FixHistory::book(const kernels::Block& b, int k, int i, double share, const Models& models) {
-  double* const row = array_atom[i];
-  const bool adheres = models.law->root >= 0;
-  const double stored = b.stored_energy.a[k];
-  const double work = b.plastic_work_step.a[k];
-  row[plastic_work] += share * (models.compaction ? work : std::max(0.0, work));  // growth can give work back
-  row[elastic_energy] += share * stored;
-  row[loaded_contacts] += adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
-  if (adheres) row[adhesive_work] += share * b.adhesion_loss.a[k];
-  if (!models.books_friction) return;
-  row[friction_work] += share * b.friction_work.a[k];
-  row[friction_energy] += share * b.spring_energy.a[k];
+template <bool wall>
+void FixHistory::book(const kernels::Block& b, int n, const Models& models) {
+  constexpr double share = wall ? 1.0 : 0.5;
+  const bool adheres = models.law->root >= 0, gives_back = models.compaction, rubs = models.books_friction;
+  const int nlocal = atom->nlocal;
+  double* const rows = array_atom[0];
+  const auto add = [=, &b](int k, double* row) {
+    const double stored = b.stored_energy.a[k], work = b.plastic_work_step.a[k];
+    row[plastic_work] += share * (gives_back ? work : std::max(0.0, work));  // growth can give work back
+    row[elastic_energy] += share * stored;
+    row[loaded_contacts] += adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
+    if (adheres) row[adhesive_work] += share * b.adhesion_loss.a[k];
+    if (!rubs) return;
+    row[friction_work] += share * b.friction_work.a[k];
+    row[friction_energy] += share * b.spring_energy.a[k];
+  };
+  for (int k = 0; k < n; ++k) {
+    add(k, rows + long(columns) * b.i[k]);
+    if (!wall && b.j[k] < nlocal) add(k, rows + long(columns) * b.j[k]);
+  }
 }
+
+template void FixHistory::book<false>(const kernels::Block&, int, const Models&);
+template void FixHistory::book<true>(const kernels::Block&, int, const Models&);
 
 void FixHistory::close_growth(bool counts) {
   bodies_.resize(2L * rows_ + 2);  // kernels read two numbers behind the last sphere
@@ -149,19 +161,15 @@ size_t FixHistory::longest() const {
 /// From the list to the atoms: the contacts of the last evaluation.
 void FixHistory::collect() {
   if (!page_holds_ || layout_.values == 0) return;
-  const NeighList& list = **list_;
   const int nlocal = atom->nlocal;
   const tagint* const tag = atom->tag;
   for (auto& held : held_) held.clear();
-  for (int ii = 0; ii < list.inum; ++ii) {
-    const int i = list.ilist[ii];
-    for (int jj = 0; jj < list.numneigh[i]; ++jj) {
-      const double* const history = at(i, jj);
-      if (history[layout_.last_step] != evaluations_) continue;
-      const int j = list.firstneigh[i][jj] & NEIGHMASK;
-      remember(i, tag[j], history, false);
-      if (j < nlocal) remember(j, tag[i], history, true);
-    }
+  for (int place = 0; place < pairs_.count(); ++place) {
+    const double* const history = at(place);
+    if (history[layout_.last_step] != evaluations_) continue;
+    const int i = pairs_.i(place), j = pairs_.j(place);
+    remember(i, tag[j], history, false);
+    if (j < nlocal) remember(j, tag[i], history, true);
   }
   std::copy_n(tag, nlocal, own_.begin());
   maxexchange = static_cast<int>(longest()) + most_beside;
@@ -207,31 +215,35 @@ void FixHistory::post_run() {
 
 /// From the atoms to a new list.
 void FixHistory::distribute() {
+  read_list();
   page_holds_ = layout_.values > 0;
   if (!page_holds_) return;
-  const NeighList& list = **list_;
-  first_.resize(atom->nmax);
-  long total = 0;
-  for (int ii = 0; ii < list.inum; ++ii) {
-    const int i = list.ilist[ii];
-    first_[i] = total;
-    total += long(layout_.values) * list.numneigh[i];
-  }
-  page_.assign(total, 0.0);
+  page_.assign(long(layout_.values) * pairs_.count(), 0.0);
   const tagint* const tag = atom->tag;
+  for (int place = 0; place < pairs_.count(); ++place) {
+    const std::vector<double>& held = held_[pairs_.i(place)];
+    const tagint partner = held.empty() ? 0 : tag[pairs_.j(place)];
+    for (size_t k = 0; k < held.size(); k += stride())
+      if (static_cast<tagint>(ubuf(held[k]).i) == partner) {
+        std::copy_n(held.data() + k + 1, layout_.values, at(place));
+        break;
+      }
+  }
+}
+
+void FixHistory::read_list() {
+  const NeighList& list = **list_;
+  const bool excludes = atom->molecular != Atom::ATOMIC;
+  pairs_.clear(atom->nmax);
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii];
-    const std::vector<double>& held = held_[i];
-    if (held.empty()) continue;
+    pairs_.begin(i);
     for (int jj = 0; jj < list.numneigh[i]; ++jj) {
-      const tagint partner = tag[list.firstneigh[i][jj] & NEIGHMASK];
-      for (size_t k = 0; k < held.size(); k += stride())
-        if (static_cast<tagint>(ubuf(held[k]).i) == partner) {
-          std::copy_n(held.data() + k + 1, layout_.values, at(i, jj));
-          break;
-        }
+      const int j = list.firstneigh[i][jj];
+      if (!excludes || force->special_lj[(j >> SBBITS) & 3] != 0.0) pairs_.add(i, j & NEIGHMASK);
     }
   }
+  pairs_.close();
 }
 
 void FixHistory::grow_arrays(int atoms) {
@@ -324,7 +336,8 @@ void FixHistory::unpack_restart(int i, int nth) {
 }
 
 double FixHistory::memory_usage() {
-  size_t numbers = page_.capacity() + (columns + 1) * held_.size() + dents_.capacity() + bodies_.capacity();
+  size_t numbers =
+      page_.capacity() + pairs_.count() + (columns + 1) * held_.size() + dents_.capacity() + bodies_.capacity();
   for (const auto& held : held_) numbers += held.capacity();
   return static_cast<double>(numbers * sizeof(double));
 }

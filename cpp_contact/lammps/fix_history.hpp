@@ -7,6 +7,7 @@
 
 #include "epdem/compaction.hpp"
 #include "fix.h"
+#include "kernels/pair_list.hpp"
 #include "words.hpp"
 
 namespace epdem::lammps {
@@ -25,7 +26,11 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Before each run. Collective.
   void prepare(LAMMPS_NS::NeighList* const* list, const Layout& layout, const Models& models);
 
-  double* at(int i, int slot) { return page_.data() + first_[i] + long(layout_.values) * slot; }
+  /// The pairs of the list without those that bonds exclude.
+  const kernels::PairList& pairs() const { return pairs_; }
+
+  /// The history of the pair at this place of the list.
+  double* at(int place) { return page_.data() + long(layout_.values) * place; }
 
   /// Whether the list, not the atoms, holds the histories.
   bool at_list() const { return page_holds_; }
@@ -43,8 +48,9 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Energies are requested: columns plastic work, elastic energy, loaded contacts, work lost by friction, elastic
   /// energy of friction, work lost by adhesion in its jumps.
   enum Column { plastic_work, elastic_energy, loaded_contacts, friction_work, friction_energy, adhesive_work, columns };
-  /// Adds `share` of the energies of contact k of a block to atom i.
-  void book(const kernels::Block& b, int k, int i, double share, const Models& models);
+  /// Adds the energies of n contacts to their atoms: half of a pair to each atom of this rank, all of a wall.
+  template <bool wall>
+  void book(const kernels::Block& b, int n, const Models& models);
   /// Notes the largest contact radius and overlap over R* of a block.
   void note_strain(const kernels::Block& b);
   /// Largest contact radius (0) or overlap (1) over R* of all contacts since the start.
@@ -86,6 +92,7 @@ class FixHistory : public LAMMPS_NS::Fix {
  private:
   void collect();
   void distribute();
+  void read_list();
   void rename_partners();
   int stride() const { return layout_.values + 1; }
   void remember(int i, LAMMPS_NS::tagint partner, const double* values, bool mirrored);
@@ -97,14 +104,14 @@ class FixHistory : public LAMMPS_NS::Fix {
   double evaluations_ = 0.0;
   double strain_[2] = {};
   static constexpr int dent_sums = 3;
-  std::vector<double> dents_;              // with compaction, by atom: sums of cover, volume and area of the dents
-  std::vector<double> bodies_;             // BodySums, also of ghosts
-  double largest_ = 0.0;                   // growth
-  bool page_holds_ = false;                // else the atoms hold the histories
-  int rows_ = 0;                           // of array_atom
-  int stored_most_ = 0;                    // numbers of the contacts of an atom in a restart file, of all ranks
-  std::vector<double> page_;               // by slot of the list
-  std::vector<long> first_;                // of an atom in the page
+  std::vector<double> dents_;   // with compaction, by atom: sums of cover, volume and area of the dents
+  std::vector<double> bodies_;  // BodySums, also of ghosts
+  double largest_ = 0.0;        // growth
+  bool page_holds_ = false;     // else the atoms hold the histories
+  int rows_ = 0;                // of array_atom
+  int stored_most_ = 0;         // numbers of the contacts of an atom in a restart file, of all ranks
+  kernels::PairList pairs_;
+  std::vector<double> page_;               // by place of the pair
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
   std::vector<LAMMPS_NS::tagint> own_;     // by atom: its tag when partners were named, 0: a new atom
 };

@@ -12,6 +12,7 @@
 #include "epdem/compaction.hpp"
 #include "error.h"
 #include "force.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 #include "utils.h"
@@ -70,7 +71,7 @@ FixWall::~FixWall() {
   atom->delete_callback(id, Atom::RESTART);
 }
 
-int FixWall::setmask() { return FixConst::POST_FORCE; }
+int FixWall::setmask() { return FixConst::POST_FORCE | FixConst::POST_NEIGHBOR; }
 
 void FixWall::init() {
   check_settings(lmp, place_);
@@ -114,9 +115,29 @@ std::vector<int> FixWall::types_of_group() const {
   return types;
 }
 
+/// Before new neighbor lists, no sphere moves by more than half of the skin, if LAMMPS checks this in each step; else
+/// all spheres are candidates. While a wall moves by another half of the skin, spheres can move from one side of their
+/// place in the lists to the other.
+void FixWall::choose_candidates() {
+  const double rounding = 1.0 + 1e-6, slack = (moves() ? 1.5 : 0.5) * rounding * neighbor->skin;
+  const bool checks = neighbor->dist_check && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once &&
+                      neighbor->includegroup == 0 && way() < HUGE_VAL && modify->get_fix_by_style("^adapt").empty();
+  candidates_.clear();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!checks || is_near(i, reach_of(i) + slack))
+      candidates_.push_back(i);
+    else
+      count_[i] = 0;
+  }
+  note_placement();
+  candidates_valid_ = true;
+}
+
 /// LAMMPS also computes forces before the first step of a run; that evaluation changes no history.
 void FixWall::post_force(int) {
   const bool counts = !update->setupflag;
+  begin();
+  if (!candidates_valid_ || (moves() && !(way() <= 0.5 * neighbor->skin))) choose_candidates();
   std::vector<double> before;
   std::vector<int> count_before;
   if (!counts) before = held_, count_before = count_;
@@ -136,19 +157,18 @@ void FixWall::post_force(int) {
   pass_.omega = rows[1];
   std::fill_n(sum_, sums, 0.0);
   local_.clear();
-  begin();
 
   kernels::Block& b = *block_;
   std::vector<Contact> found;
   int n = 0;
-  for (int i = 0; i < atom->nlocal; ++i) {
+  for (const int i : candidates_) {
     if (!(atom->mask[i] & groupbit)) continue;
     found.clear();
     find(i, found);
     if (layout_.root >= 0 || layout_.growth >= 0) drop_parted(i, found);
     if (static_cast<int>(found.size()) > most_)
       error->one(FLERR, "{}: atom {} has more than {} contacts with the wall", place_, atom->tag[i], most_);
-    keep_records(i, found);
+    if (!has_records_of(i, found)) keep_records(i, found);
     for (size_t k = 0; k < found.size(); ++k) {
       const Contact& c = found[k];
       b.i[n] = i;
@@ -200,6 +220,15 @@ bool FixWall::stands(int i, const Contact& contact) {
   return closes_gap(c, contact.distance * contact.distance, pass_.repeats);
 }
 
+/// Whether the records of a sphere have the order of its contacts.
+bool FixWall::has_records_of(int i, const std::vector<Contact>& found) {
+  const int count = count_[i];
+  if (count != static_cast<int>(found.size())) return false;
+  for (int k = 0; k < count; ++k)
+    if (record(i, k)[0] != found[k].part) return false;
+  return true;
+}
+
 /// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.
 void FixWall::keep_records(int i, const std::vector<Contact>& found) {
   const int known = count_[i];
@@ -223,17 +252,19 @@ void FixWall::finish(int n) {
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   for (int k = 0; k < n; ++k) {
     const int i = b.i[k];
-    const auto point = [&](int axis) { return atom->x[i][axis] - b.from_wall[axis].a[k]; };
+    double *const f = atom->f[i], *const torque = atom->torque[i];
+    const double* const x = atom->x[i];
+    const auto point = [&](int axis) { return x[axis] - b.from_wall[axis].a[k]; };
     for (int axis = 0; axis < 3; ++axis) {
-      atom->f[i][axis] += b.force[axis].a[k];
-      atom->torque[i][axis] += b.torque_i[axis].a[k];
+      f[axis] += b.force[axis].a[k];
+      torque[axis] += b.torque_i[axis].a[k];
       sum_[axis] += b.force[axis].a[k];
       const int second = (axis + 1) % 3, third = (axis + 2) % 3;
       sum_[3 + axis] += point(second) * b.force[third].a[k] - point(third) * b.force[second].a[k];
       sum_[6] += b.force[axis].a[k] * b.wall_v[axis].a[k];
     }
-    if (pass_.work) pair_->history()->book(b, k, i, 1.0, words_.models);
   }
+  if (pass_.work) pair_->history()->book<true>(b, n, words_.models);
   if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);
   if (pair_->energies()) note(n);
@@ -243,15 +274,22 @@ void FixWall::finish(int n) {
 void FixWall::note(int n) {
   const kernels::Block& b = *block_;
   const int most = words_.models.law->most, root = layout_.root;
-  for (int k = 0; k < n; ++k) {
-    const double overlap = b.overlap.a[k], distance = atom->radius[b.i[k]] - overlap;
-    local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
-                                 most < 0 ? overlap : std::max(overlap, b.history[k][most]),
-                                 double(root < 0 || b.history[k][root] > 0.0),
-                                 layout_.growth < 0 ? 0.0 : added_overlap_of(b.history[k] + layout_.growth),
-                                 layout_.growth < 0 ? 0.0 : screening_of(b.history[k] + layout_.growth)});
-    for (const auto& force : b.force) local_.push_back(force.a[k]);
-    for (const auto& from : b.from_wall) local_.push_back(distance > 0.0 ? from.a[k] / distance : 0.0);
+  const size_t first = local_.size();
+  local_.resize(first + local_columns * n);
+  double* row = local_.data() + first;
+  for (int k = 0; k < n; ++k, row += local_columns) {
+    const double overlap = b.overlap.a[k], distance = atom->radius[b.i[k]] - overlap, *const history = b.history[k];
+    row[0] = atom->tag[b.i[k]];
+    row[1] = b.j[k];
+    row[2] = overlap;
+    row[3] = most < 0 ? overlap : std::max(overlap, history[most]);
+    row[4] = root < 0 || history[root] > 0.0;
+    row[5] = layout_.growth < 0 ? 0.0 : added_overlap_of(history + layout_.growth);
+    row[6] = layout_.growth < 0 ? 0.0 : screening_of(history + layout_.growth);
+    for (int axis = 0; axis < 3; ++axis) {
+      row[7 + axis] = b.force[axis].a[k];
+      row[10 + axis] = distance > 0.0 ? b.from_wall[axis].a[k] / distance : 0.0;
+    }
   }
 }
 
@@ -339,6 +377,11 @@ void FixWallPlanes::find(int i, std::vector<Contact>& found) {
   if (x < high_) note(1, x - high_);
 }
 
+bool FixWallPlanes::is_near(int i, double distance) {
+  const double x = atom->x[i][axis_];
+  return std::fabs(x - low_) < distance || std::fabs(x - high_) < distance;
+}
+
 FixWallRegion::FixWallRegion(LAMMPS* lmp, int count, char** word)
     : FixWall(lmp, count, word), name_(count > 3 ? word[3] : "") {
   if (count < 5) error->all(FLERR, "{}: the words are ID group wall/ep/region REGION LAW ...", place_);
@@ -352,6 +395,8 @@ void FixWallRegion::init() {
   region_ = domain->get_region_by_id(name_);
   if (!region_) error->all(FLERR, "{}: region {} is gone", place_, name_);
   moves_ = region_->dynamic_check() != 0;
+  parts_.clear();
+  add_parts(*region_, parts_);
   FixWall::init();
 }
 
@@ -365,11 +410,9 @@ void FixWallRegion::begin() {
 
 /// Recalls the motion of the last step, or notes that of this step.
 void FixWallRegion::exchange_motion(bool recalls) {
-  std::vector<Region*> parts;
-  add_parts(*region_, parts);
-  motion_.resize(numbers_of_motion * parts.size());
+  motion_.resize(numbers_of_motion * parts_.size());
   double* number = motion_.data();
-  for (Region* const part : parts) {
+  for (Region* const part : parts_) {
     for (double* const of : {part->v, part->omega}) {
       recalls ? std::copy_n(number, 3, of) : std::copy_n(of, 3, number);
       number += 3;
@@ -395,6 +438,49 @@ void FixWallRegion::write_restart(FILE* file) {
 void FixWallRegion::restart(char* stored) {
   const double* const values = reinterpret_cast<const double*>(stored);
   motion_.assign(values + 1, values + 1 + static_cast<size_t>(values[0]));
+}
+
+void FixWallRegion::note_placement() {
+  placements_.clear();
+  for (const Region* const part : parts_) {
+    double most = 0.0;
+    for (int i = 0; part->rotateflag && i < atom->nlocal; ++i) {
+      double square = 0.0;
+      for (int axis = 0; axis < 3; ++axis) square += std::pow(atom->x[i][axis] - part->rpoint[axis], 2);
+      most = std::max(most, std::sqrt(square) + reach_of(i));
+    }
+    placements_.push_back({{part->dx, part->dy, part->dz}, part->theta, most + 2.0 * neighbor->skin});
+  }
+}
+
+/// Of a region whose shape varies there is none.
+double FixWallRegion::way() const {
+  double most = 0.0;
+  for (size_t k = 0; k < parts_.size(); ++k) {
+    const Region& part = *parts_[k];
+    if (part.varshape) return HUGE_VAL;
+    if (k == placements_.size()) break;
+    const Placement& noted = placements_[k];
+    const double dx = part.dx - noted.shift[0], dy = part.dy - noted.shift[1], dz = part.dz - noted.shift[2];
+    const double turn = part.rotateflag ? std::fabs(part.theta - noted.angle) * noted.lever : 0.0;
+    most = std::max(most, (part.moveflag ? std::sqrt(dx * dx + dy * dy + dz * dz) : 0.0) + turn);
+  }
+  return most;
+}
+
+/// A part can hide the nearest point of another: each part is tested alone, from inside and outside.
+bool FixWallRegion::is_near(int i, double distance) {
+  const double* const x = atom->x[i];
+  for (Region* const part : parts_) {
+    if (part->reglist) continue;
+    const int side = part->interior;
+    bool near = false;
+    for (part->interior = 0; part->interior < 2; ++part->interior)
+      near |= part->surface(x[0], x[1], x[2], distance) > 0;
+    part->interior = side;
+    if (near) return true;
+  }
+  return false;
 }
 
 void FixWallRegion::find(int i, std::vector<Contact>& found) {

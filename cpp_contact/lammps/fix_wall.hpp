@@ -15,13 +15,16 @@
 namespace epdem::lammps {
 
 /// Contacts of spheres with a wall. The words of the fix give the material of the wall and the coefficients; pair_style
-/// ep gives the material of the spheres.
+/// ep gives the material of the spheres. Only candidates are looked at: spheres that can touch the wall before LAMMPS
+/// makes the next neighbor lists.
 class FixWall : public LAMMPS_NS::Fix {
  public:
   ~FixWall() override;
 
   int setmask() override;
   void init() override;
+  void setup_post_neighbor() override { post_neighbor(); }
+  void post_neighbor() override { candidates_valid_ = false; }
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
   /// Force of the wall on all spheres, torque about the origin of these forces at the surface, power of the wall.
@@ -56,15 +59,25 @@ class FixWall : public LAMMPS_NS::Fix {
   double reach_of(int i) const { return atom->radius[i] * reach_factor_ + reach_; }
   /// Finds the contacts of sphere i, at most `most`.
   virtual void find(int i, std::vector<Contact>& found) = 0;
+  /// Whether the centre of sphere i is within this distance of the surface, on either side [length].
+  virtual bool is_near(int i, double distance) = 0;
+  /// Whether the wall has another shape or place in each step.
+  virtual bool moves() const { return false; }
+  /// Notes the placement of a wall that moves.
+  virtual void note_placement() {}
+  /// Upper limit of the way of the surface since its placement was noted [length].
+  virtual double way() const { return 0.0; }
 
   const std::string place_;
 
  private:
   double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
   std::vector<int> types_of_group() const;
+  void choose_candidates();
   void drop_parted(int i, std::vector<Contact>& found);
   bool stands(int i, const Contact& c);
   void keep_records(int i, const std::vector<Contact>& found);
+  bool has_records_of(int i, const std::vector<Contact>& found);
   void finish(int n);
   void note(int n);
 
@@ -75,6 +88,8 @@ class FixWall : public LAMMPS_NS::Fix {
   double reach_factor_ = 1.0;
   std::vector<double> held_;  // `most` records for each atom: number of the part, history of the contact
   std::vector<int> count_;    // of records in use, for each atom
+  std::vector<int> candidates_;
+  bool candidates_valid_ = false;
   PairEp* pair_ = nullptr;
   std::vector<double> constants_;   // by type
   kernels::Kernel kernel_[2] = {};  // the second one is complete
@@ -97,6 +112,7 @@ class FixWallPlanes : public FixWall {
 
  protected:
   void find(int i, std::vector<Contact>& found) override;
+  bool is_near(int i, double distance) override;
 
  private:
   int axis_ = 0;
@@ -115,13 +131,25 @@ class FixWallRegion : public FixWall {
  protected:
   void begin() override;
   void find(int i, std::vector<Contact>& found) override;
+  bool is_near(int i, double distance) override;
+  bool moves() const override { return moves_; }
+  void note_placement() override;
+  double way() const override;
 
  private:
   void exchange_motion(bool recalls);
 
   const std::string name_;
+  /// Placement of a part of the region when candidates were chosen.
+  struct Placement {
+    double shift[3], angle;
+    double lever;  // largest distance of a sphere from the axis [length]
+  };
+
   LAMMPS_NS::Region* region_ = nullptr;
   bool moves_ = false;
+  std::vector<LAMMPS_NS::Region*> parts_;  // the region, and regions that it is made of
+  std::vector<Placement> placements_;
   static constexpr int numbers_of_motion = 7;
   std::vector<double> motion_;  // in the last step: velocity, spin, growth of a radius of the region and of its parts
 };

@@ -141,6 +141,7 @@ void PairEp::init_style() {
   if (!models_.law) error->all(FLERR, "pair_style ep: no pair_coeff names a law; give pair_coeff 1 1 LAW E nu ...");
   for (const bool complete : {false, true})
     kernel_[complete] = kernel_of(lmp, "pair_style ep", models_, false, complete);
+  spheres_ = &kernels_of(lmp).spheres;
   layout_ = layout_of(models_, false);
   // lists by radius end at the skin, lists by type at the cutoff of init_one
   const int by_radius = models_.compaction ? NeighConst::REQ_DEFAULT : NeighConst::REQ_SIZE;
@@ -231,76 +232,47 @@ void PairEp::compute(int eflag, int vflag) {
     std::vector<double> before;
     if (!counts) before = history_->page();
     set_pass(counts);
-    models_.compaction       ? gather<Reach::grown>()
-    : models_.law->root >= 0 ? gather<Reach::attached>()
-                             : gather<Reach::touching>();
+    gather();
     if (!counts) history_->page().swap(before);
   }
   if (counts) history_->advance();
 }
 
-/// Notes every neighbor, and those stay that overlap; with adhesion also those that are attached across a gap, with
-/// compaction those whose growth closes a gap.
-template <PairEp::Reach reach>
+/// Has all pairs of the list computed that overlap or stand across a gap.
 void PairEp::gather() {
-  kernels::Block& b = *block_;
-  const double *const x = atom->x[0], *const radius = atom->radius;
-  [[maybe_unused]] const double factor = reach == Reach::grown ? history_->factor() : 1.0;
-  const bool excludes = atom->molecular != Atom::ATOMIC;
-  int n = 0;
-  for (int ii = 0; ii < list->inum; ++ii) {
-    const int i = list->ilist[ii], count = list->numneigh[i];
-    const int* const neighbors = list->firstneigh[i];
-    const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
-    for (int first = 0; first < count; first += block_size) {  // nearly always one turn
-      const int last = std::min(count, first + block_size);
-      if (n + last - first > block_size) {
-        finish(n);
-        n = 0;
-      }
-      for (int jj = first; jj < last; ++jj) {
-        const long j = neighbors[jj] & NEIGHMASK;
-        const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
-        const double rsq = dx * dx + dy * dy + dz * dz;
-        bool contact = rsq < sum * sum;
-        if constexpr (reach == Reach::grown)
-          contact =
-              contact || (rsq < factor * sum * sum && growth_closes(i, static_cast<int>(j), history_->at(i, jj), rsq));
-        if constexpr (reach == Reach::attached) {
-          const double* const history = history_->at(i, jj);
-          const bool stands = (history[layout_.root] > 0.0) | (pass_.repeats & (history[layout_.jump] != 0.0));
-          contact |= stands & (pass_.now - history[layout_.last_step] <= 1.0);
-        }
-        if (excludes) contact &= force->special_lj[sbmask(neighbors[jj])] != 0.0;
-        b.i[n] = i;
-        b.j[n] = static_cast<int>(j);
-        slot_[n] = jj;
-        n += contact;
-      }
-    }
-  }
-  finish(n);
+  const kernels::PairList& pairs = history_->pairs();
+  const auto compute_block = [this](int n) { finish(n); };
+  const auto search = [&](double factor) { return pairs.search(pass_.x, atom->radius, factor); };
+  if (layout_.root < 0 && layout_.growth < 0)
+    return kernels::each_overlap(*spheres_, search(1.0), *block_, place_, compute_block);
+  const double factor = layout_.growth < 0 ? HUGE_VAL : history_->factor();
+  const auto across_gap = [this](int i, int j, int place) { return stands(i, j, history_->at(place)); };
+  kernels::each_contact(*spheres_, search(factor), *block_, place_, across_gap, compute_block);
 }
 
-/// Whether growth closes the gap between two spheres; a step that is evaluated once more has the growth it had.
-bool PairEp::growth_closes(int i, int j, const double* history, double rsq) const {
+/// Whether two spheres that do not overlap are in contact: attached, or grown across the gap. A step that is evaluated
+/// once more has the attachment and the growth that it had.
+bool PairEp::stands(int i, int j, const double* history) const {
   const bool known = history && pass_.now - history[layout_.last_step] <= 1.0;
+  if (layout_.growth < 0)
+    return known && (history[layout_.root] > 0.0 || (pass_.repeats && history[layout_.jump] != 0.0));
   if (pass_.repeats && !known) return false;
-  const double ri = atom->radius[i], rj = atom->radius[j];
+  const double *const x = pass_.x, ri = atom->radius[i], rj = atom->radius[j];
+  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
   const auto c =
       growing_pair(ri, rj, sums_of(pass_.sums, i), sums_of(pass_.sums, j), known ? history + layout_.growth : nullptr);
-  return closes_gap(c, rsq, pass_.repeats);
+  return closes_gap(c, dx * dx + dy * dy + dz * dz, pass_.repeats);
 }
 
-/// Fills the block with n > 0 pairs; history_at(i, k) is the history of pair k.
+/// Fills the block with n > 0 pairs; history_at(k) is the history of pair k.
 template <class HistoryAt>
 void PairEp::fetch(int n, HistoryAt history_at) {
   kernels::Block& b = *block_;
   const int values = layout_.values;
-  const auto history = [&](long i, int k) {
+  const auto history = [&](long, int k) {
     if (values == 0) return;
-    double* const h = b.history[k] = history_at(static_cast<int>(i), k);
-    for (int line = 0; line < values; line += 8) __builtin_prefetch(b.history[k] + line, 1);
+    double* const h = b.history[k] = history_at(k);
+    for (int line = 0; line < values; line += 8) __builtin_prefetch(h + line, 1);
   };
   const kernels::Spheres spheres{atom->f[0], atom->torque[0], atom->radius, atom->rmass,
                                  atom->type, atom->mask,      frozen_};
@@ -311,37 +283,38 @@ void PairEp::fetch(int n, HistoryAt history_at) {
 void PairEp::finish(int n) {
   if (n == 0) return;
   kernels::Block& b = *block_;
-  fetch(n, [&](int i, int k) { return history_->at(i, slot_[k]); });
+  fetch(n, [&](int k) { return history_->at(place_[k]); });
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
   if (models_.compaction) history_->note_dents(b, n, false);
-  pass_.work ? scatter<true>(n) : scatter<false>(n);
+  scatter(n);
+  if (pass_.work) history_->book<false>(b, n, models_);
   if (evflag) tally(n);
 }
 
-/// Forces and torques in the order of the list; the owner of a ghost computes what the ghost gets. Each atom of a
-/// contact has half of its energies.
-template <bool energies>
+/// Forces and torques in the order of the list; the owner of a ghost computes what the ghost gets.
 void PairEp::scatter(int n) {
   const kernels::Block& b = *block_;
   double *const f = atom->f[0], *const t = atom->torque[0];
   const int nlocal = atom->nlocal;
   double others[6];
-  for (int k = 0; k < n; ++k) {
-    const int i = b.i[k], j = b.j[k];
-    const bool own = j < nlocal;
+  for (int k = 0; k < n;) {  // the sums of atom i stay in registers
+    const int i = b.i[k];
     double *const fi = f + 3L * i, *const ti = t + 3L * i;
-    double *const fj = own ? f + 3L * j : others, *const tj = own ? t + 3L * j : others + 3;
-    for (int axis = 0; axis < 3; ++axis) {
-      fi[axis] += b.force[axis].a[k];
-      fj[axis] -= b.force[axis].a[k];
-      ti[axis] += b.torque_i[axis].a[k];
-      tj[axis] += b.torque_j[axis].a[k];
-    }
-    if constexpr (energies) {
-      history_->book(b, k, i, 0.5, models_);
-      if (own) history_->book(b, k, j, 0.5, models_);
-    }
+    double sum[6] = {fi[0], fi[1], fi[2], ti[0], ti[1], ti[2]};
+    do {
+      const int j = b.j[k];
+      const bool own = j < nlocal;
+      double *const fj = own ? f + 3L * j : others, *const tj = own ? t + 3L * j : others + 3;
+      for (int axis = 0; axis < 3; ++axis) {
+        sum[axis] += b.force[axis].a[k];
+        fj[axis] -= b.force[axis].a[k];
+        sum[3 + axis] += b.torque_i[axis].a[k];
+        tj[axis] += b.torque_j[axis].a[k];
+      }
+      ++k;
+    } while (k < n && b.i[k] == i);
+    for (int axis = 0; axis < 3; ++axis) fi[axis] = sum[axis], ti[axis] = sum[3 + axis];
   }
 }
 
@@ -358,10 +331,8 @@ void PairEp::tally(int n) {
 /// The history of a contact at the list; null: none.
 double* PairEp::history_of(int i, int j) const {
   for (const auto& [one, other] : {std::pair{i, j}, std::pair{j, i}}) {
-    if (one >= atom->nlocal) continue;
-    const int* const neighbors = list->firstneigh[one];
-    for (int jj = 0; jj < list->numneigh[one]; ++jj)
-      if ((neighbors[jj] & NEIGHMASK) == other) return history_->at(one, jj);
+    const int place = one < atom->nlocal ? history_->pairs().find(one, other) : -1;
+    if (place >= 0) return history_->at(place);
   }
   return nullptr;
 }
@@ -373,8 +344,8 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
   const bool recent = known && history_->now() - known[layout_.last_step] <= 1.0;
   set_pass(false);
-  const bool attached = recent && ((layout_.root >= 0 && known[layout_.root] > 0.0) ||
-                                   (layout_.growth >= 0 && growth_closes(i, j, known, rsq)));
+  const bool attached =
+      recent && ((layout_.root >= 0 && known[layout_.root] > 0.0) || (layout_.growth >= 0 && stands(i, j, known)));
   if (overlap <= 0.0 && !attached) return 0.0;
   std::vector<double> history(std::max(1, layout_.values), 0.0);
   if (known) std::copy_n(known, layout_.values, history.data());
@@ -384,7 +355,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   kernels::Block& b = *block_;
   b.i[0] = i;
   b.j[0] = j;
-  fetch(1, [&](int, int) { return history.data(); });
+  fetch(1, [&](int) { return history.data(); });
   kernel_[true](b, 1, pass_);
   const double *const xi = atom->x[i], *const xj = atom->x[j];
   for (int axis = 0; axis < 3; ++axis) fforce += b.force[axis].a[0] * (xi[axis] - xj[axis]) / rsq;

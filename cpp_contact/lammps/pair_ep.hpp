@@ -40,10 +40,6 @@ class PairEp : public LAMMPS_NS::Pair {
   double largest_radius(int type) const { return largest_[type]; }
 
  private:
-  /// Bodies in contact: bodies that overlap; also bodies that adhere across a gap; also bodies whose growth closes a
-  /// gap.
-  enum class Reach { touching, attached, grown };
-
   struct PairOfTypes {
     std::string text;  // words of pair_coeff; empty: not given
     Words words;
@@ -55,13 +51,11 @@ class PairEp : public LAMMPS_NS::Pair {
   void create_history();
   void measure_radii();
   void set_pass(bool counts);
-  template <Reach reach>
   void gather();
-  bool growth_closes(int i, int j, const double* history, double rsq) const;
+  bool stands(int i, int j, const double* history) const;
   template <class HistoryAt>
   void fetch(int n, HistoryAt history_at);
   void finish(int n);
-  template <bool energies>
   void scatter(int n);
   void tally(int n);
   double* history_of(int i, int j) const;
@@ -79,7 +73,8 @@ class PairEp : public LAMMPS_NS::Pair {
   kernels::Kernel kernel_[2] = {};  // the second one is complete
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
-  int slot_[kernels::block_size + kernels::most_lanes];
+  const kernels::SphereKernels* spheres_ = nullptr;
+  int place_[kernels::block_size + kernels::most_lanes];  // in the list
   std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
   int frozen_ = 0;                 // group bit
   double single_[9];               // svector

@@ -310,20 +310,25 @@ double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const 
   return gap;
 }
 
-kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& models, bool wall, bool complete) {
-  if (models.law->root >= 0 && models.cohesion)
-    fail(lmp, place + ": cohesion " + names<Cohesions>()[models.cohesion] + " beside " + models.law->name +
-                  ", which attracts by itself; remove one");
+const kernels::Kernels& kernels_of(LAMMPS* lmp) {
   const char* const wanted = std::getenv("EPDEM_SIMD");
   const kernels::Kernels* const set = kernels::kernels_of(wanted ? wanted : "");
   if (!set)
     fail(lmp, "EPDEM_SIMD = " + std::string(wanted) +
                   ": this processor has no such instructions; leave it unset, or take sse2, avx2 or avx512");
+  return *set;
+}
+
+kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& models, bool wall, bool complete) {
+  if (models.law->root >= 0 && models.cohesion)
+    fail(lmp, place + ": cohesion " + names<Cohesions>()[models.cohesion] + " beside " + models.law->name +
+                  ", which attracts by itself; remove one");
+  const kernels::Kernels& set = kernels_of(lmp);
   if (models.compaction && models.cohesion)
     fail(lmp, place + ": compaction beside cohesion " + names<Cohesions>()[models.cohesion] + "; remove one");
   const int law = models.law->place, friction = models.friction;
   const kernels::Kernel kernel =
-      models.compaction ? set->grown[law][friction][wall][complete] : set->of[law][friction][wall];
+      models.compaction ? set.grown[law][friction][wall][complete] : set.of[law][friction][wall];
   if (kernel) return kernel;
   if (models.compaction) fail(lmp, place + ": law " + models.law->name + " has no compaction; take law cavity");
   fail(lmp, place + ": tangential " + names<Frictions>()[models.friction] + " does not exist beside law " +

@@ -88,6 +88,9 @@ void refuse_rigid_bodies(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 double checked_gap(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const double* constants,
                    double R_star);
 
+/// The kernels of the widest instruction set of this processor, or of EPDEM_SIMD; ends the run if that is none.
+const kernels::Kernels& kernels_of(LAMMPS_NS::LAMMPS* lmp);
+
 /// The kernel of these models; ends the run if the models have no kernel. complete: it can compute energies and repeat
 /// a step, with compaction at a cost.
 kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall,

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pairs of a host's neighbor lists side by side in memory, and their way into blocks. For hosts alone: sources that
+// are compiled for newer processors hold no inline function that others share.
+#pragma once
+
+#include <vector>
+
+#include "kernels/block.hpp"
+
+namespace epdem::kernels {
+
+/// Pairs in the order of the neighbor lists; the place of a pair is its number in this order.
+class PairList {
+ public:
+  /// Begins a list for this number of spheres.
+  void clear(int spheres) {
+    i_.clear();
+    j_.clear();
+    first_.assign(spheres, 0);
+    count_ = 0;
+  }
+
+  /// Begins the pairs of sphere i.
+  void begin(int i) { first_[i] = count_; }
+
+  /// Adds a pair of the sphere that `begin` named.
+  void add(int i, int j) {
+    i_.push_back(i);
+    j_.push_back(j);
+    ++count_;
+  }
+
+  /// Ends the list.
+  void close() {
+    for (std::vector<int>* spheres : {&i_, &j_}) spheres->insert(spheres->end(), most_lanes, 0);
+  }
+
+  int count() const { return count_; }
+  int i(int place) const { return i_[place]; }
+  int j(int place) const { return j_[place]; }
+  /// Place of the first pair of sphere i.
+  int first(int i) const { return first_[i]; }
+
+  /// Place of the pair (i, j) in the list of i; -1: it is not there.
+  int find(int i, int j) const {
+    for (int place = first_[i]; place < count_ && i_[place] == i; ++place)
+      if (j_[place] == j) return place;
+    return -1;
+  }
+
+  /// A search for the pairs closer than the root of `factor` times the sum of their radii.
+  PairSearch search(const double* x, const double* radius, double factor) const {
+    return {x, radius, factor, i_.data(), j_.data(), count_};
+  }
+
+ private:
+  std::vector<int> i_, j_;  // most_lanes more than count_
+  std::vector<int> first_;  // by sphere
+  int count_ = 0;
+};
+
+/// Writes the pairs of a search that overlap into the block, their places to `place`, and calls finish(n) for each full
+/// block.
+template <class Finish>
+inline void each_overlap(const SphereKernels& kernels, PairSearch search, Block& b, int* place, Finish finish) {
+  static_assert(2 * pairs_at_once <= block_size);
+  int n = 0;
+  while (search.tested < search.count) {
+    n += kernels.next_pairs(search, b.i + n, b.j + n, place + n);
+    if (n <= block_size - pairs_at_once) continue;
+    finish(n);
+    n = 0;
+  }
+  finish(n);
+}
+
+/// The same with the pairs of the search that do not overlap and for which stands(i, j, place) is true.
+template <class Stands, class Finish>
+inline void each_contact(const SphereKernels& kernels, PairSearch search, Block& b, int* place, Stands stands,
+                         Finish finish) {
+  int n = 0;
+  while (search.tested < search.count) {
+    const int last = n + kernels.next_near_pairs(search, b.i + n, b.j + n, place + n);
+    for (int k = n; k < last; ++k) {
+      const int i = b.i[k], j = b.j[k];
+      const bool overlaps = place[k] >= 0;
+      const int of_pair = overlaps ? place[k] : ~place[k];
+      if (!overlaps && !stands(i, j, of_pair)) continue;
+      b.i[n] = i;
+      b.j[n] = j;
+      place[n++] = of_pair;
+    }
+    if (n <= block_size - pairs_at_once) continue;
+    finish(n);
+    n = 0;
+  }
+  finish(n);
+}
+
+}  // namespace epdem::kernels
