@@ -63,4 +63,57 @@ inline void gather_pairs(Block& b, Pass& pass, int n, const Spheres& spheres, co
   }
 }
 
+/// Adds the forces and torques of n pairs in their order; those of body i stay in registers while its pairs follow each
+/// other. A ghost gets nothing: its owner computes what it gets. beside: begin(i), add(k, j, owned) for each pair of i,
+/// end(i).
+template <bool torques, class Beside>
+inline void scatter_pairs(const Block& b, int n, double* f, double* t, int owned, Beside&& beside) {
+  double others[6] = {};
+  for (int k = 0; k < n;) {
+    const long i = b.i[k];
+    double *const fi = f + 3 * i, *const ti = t + 3 * i;
+    double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
+    beside.begin(i);
+    do {
+      const long j = b.j[k];
+      const bool is_owned = j < owned;
+      double* const fj = is_owned ? f + 3 * j : others;
+      const double gx = b.force[0].a[k], gy = b.force[1].a[k], gz = b.force[2].a[k];
+      fx += gx;
+      fy += gy;
+      fz += gz;
+      fj[0] -= gx;
+      fj[1] -= gy;
+      fj[2] -= gz;
+      if constexpr (torques) {
+        double* const tj = is_owned ? t + 3 * j : others + 3;
+        tx += b.torque_i[0].a[k];
+        ty += b.torque_i[1].a[k];
+        tz += b.torque_i[2].a[k];
+        tj[0] += b.torque_j[0].a[k];
+        tj[1] += b.torque_j[1].a[k];
+        tj[2] += b.torque_j[2].a[k];
+      }
+      beside.add(k, j, is_owned);
+      ++k;
+    } while (k < n && b.i[k] == i);
+    fi[0] = fx;
+    fi[1] = fy;
+    fi[2] = fz;
+    if constexpr (torques) {
+      ti[0] = tx;
+      ti[1] = ty;
+      ti[2] = tz;
+    }
+    beside.end(i);
+  }
+}
+
+/// Forces and torques alone.
+struct NothingBeside {
+  void begin(long) const {}
+  void add(int, long, bool) const {}
+  void end(long) const {}
+};
+
 }  // namespace epdem::kernels

@@ -80,7 +80,7 @@ void FixHistory::book(const kernels::Block& b, int n, const Models& models) {
   double* const rows = array_atom[0];
   const auto add = [=, &b](int k, double* row) {
     const double stored = b.stored_energy.a[k], work = b.plastic_work_step.a[k];
-    row[plastic_work] += share * (gives_back ? work : std::max(0.0, work));  // growth can give work back
+    if (work > 0.0 || gives_back) row[plastic_work] += share * work;  // few contacts yield; growth can give work back
     row[elastic_energy] += share * stored;
     row[loaded_contacts] += adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
     if (adheres) row[adhesive_work] += share * b.adhesion_loss.a[k];
@@ -148,8 +148,10 @@ double FixHistory::compute_vector(int which) {
 
 void FixHistory::remember(int i, tagint partner, const double* values, bool mirrored) {
   std::vector<double>& held = held_[i];
-  held.push_back(ubuf(partner).d);
-  for (int k = 0; k < layout_.values; ++k) held.push_back(mirrored ? layout_.mirror[k] * values[k] : values[k]);
+  held.resize(held.size() + stride());
+  double* const value = &held[held.size() - layout_.values];
+  value[-1] = ubuf(partner).d;
+  for (int k = 0; k < layout_.values; ++k) value[k] = mirrored ? layout_.mirror[k] * values[k] : values[k];
 }
 
 size_t FixHistory::longest() const {

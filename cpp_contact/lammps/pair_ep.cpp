@@ -287,44 +287,28 @@ void PairEp::finish(int n) {
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
   if (models_.compaction) history_->note_dents(b, n, false);
-  scatter(n);
+  kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, kernels::NothingBeside{});
   if (pass_.work) history_->book<false>(b, n, models_);
-  if (evflag) tally(n);
+  if (vflag_either) tally(n);
 }
 
-/// Forces and torques in the order of the list; the owner of a ghost computes what the ghost gets.
-void PairEp::scatter(int n) {
-  const kernels::Block& b = *block_;
-  double *const f = atom->f[0], *const t = atom->torque[0];
-  const int nlocal = atom->nlocal;
-  double others[6];
-  for (int k = 0; k < n;) {  // the sums of atom i stay in registers
-    const int i = b.i[k];
-    double *const fi = f + 3L * i, *const ti = t + 3L * i;
-    double sum[6] = {fi[0], fi[1], fi[2], ti[0], ti[1], ti[2]};
-    do {
-      const int j = b.j[k];
-      const bool own = j < nlocal;
-      double *const fj = own ? f + 3L * j : others, *const tj = own ? t + 3L * j : others + 3;
-      for (int axis = 0; axis < 3; ++axis) {
-        sum[axis] += b.force[axis].a[k];
-        fj[axis] -= b.force[axis].a[k];
-        sum[3 + axis] += b.torque_i[axis].a[k];
-        tj[axis] += b.torque_j[axis].a[k];
-      }
-      ++k;
-    } while (k < n && b.i[k] == i);
-    for (int axis = 0; axis < 3; ++axis) fi[axis] = sum[axis], ti[axis] = sum[3 + axis];
-  }
-}
-
+/// Virials. A fix ave/time that samples each step makes LAMMPS request the global virial of each step, which is
+/// therefore summed up here, by the operations of ev_tally_xyz.
 void PairEp::tally(int n) {
   const kernels::Block& b = *block_;
   double** const x = atom->x;
   for (int k = 0; k < n; ++k) {
     const double *const xi = x[b.i[k]], *const xj = x[b.j[k]];
-    ev_tally_xyz(b.i[k], b.j[k], atom->nlocal, 0, 0.0, 0.0, b.force[0].a[k], b.force[1].a[k], b.force[2].a[k],
-                 xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]);
+    const double d[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+    const double F[3] = {b.force[0].a[k], b.force[1].a[k], b.force[2].a[k]};
+    if (vflag_atom) {
+      ev_tally_xyz(b.i[k], b.j[k], atom->nlocal, 0, 0.0, 0.0, F[0], F[1], F[2], d[0], d[1], d[2]);
+      continue;
+    }
+    const double v[6] = {d[0] * F[0], d[1] * F[1], d[2] * F[2], d[0] * F[1], d[0] * F[2], d[1] * F[2]};
+    for (int c = 0; c < 6; ++c) virial[c] += 0.5 * v[c];
+    if (b.j[k] >= atom->nlocal) continue;
+    for (int c = 0; c < 6; ++c) virial[c] += 0.5 * v[c];
   }
 }
 

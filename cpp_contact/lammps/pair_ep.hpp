@@ -56,7 +56,6 @@ class PairEp : public LAMMPS_NS::Pair {
   template <class HistoryAt>
   void fetch(int n, HistoryAt history_at);
   void finish(int n);
-  void scatter(int n);
   void tally(int n);
   double* history_of(int i, int j) const;
 

@@ -101,57 +101,45 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
                   : gather<Reach::attached>(plan);
 }
 
-/// The pairs of LIGGGHTS's lists side by side in memory.
 void PairLoop::read_lists() {
   if (listed_ == neighbor->lastcall) return;
   listed_ = neighbor->lastcall;
   const LAMMPS_NS::NeighList& list = *pair_->list;
-  i_.clear();
-  j_.clear();
-  first_.resize(atom->nlocal);
+  pairs_.clear(atom->nlocal);
   for (int ii = 0; ii < list.inum; ++ii) {
-    const int i = list.ilist[ii], count = list.numneigh[i];
-    first_[i] = static_cast<int>(j_.size());
-    i_.insert(i_.end(), count, i);
-    for (int jj = 0; jj < count; ++jj) j_.push_back(list.firstneigh[i][jj] & NEIGHMASK);
+    const int i = list.ilist[ii];
+    pairs_.begin(i);
+    for (int jj = 0; jj < list.numneigh[i]; ++jj) pairs_.add(i, list.firstneigh[i][jj] & NEIGHMASK);
   }
-  for (std::vector<int>* spheres : {&i_, &j_}) spheres->insert(spheres->end(), most_lanes, 0);
+  pairs_.close();
 }
 
-/// Writes into the block the pairs that overlap, with adhesion the pairs that are near, with growth also the pairs
-/// whose gap it closes.
+/// Has all pairs computed that overlap, with adhesion the pairs that are attached across a gap, with growth the pairs
+/// whose gap it closes; other near pairs lose their mark.
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
-  static_assert(2 * pairs_at_once <= block_size);
   read_lists();
-  Block& b = *block_;
-  PairSearch search{pass_.x, atom->radius, 1.0, i_.data(), j_.data(), static_cast<int>(j_.size()) - most_lanes};
-  if (reach == Reach::attached) search.factor = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
-  if (reach == Reach::grown) search.factor = plan.growth->factor();
   const SphereKernels& kernels = sphere_kernels(lmp);
-  const auto next_pairs = reach == Reach::grown ? kernels.next_near_pairs : kernels.next_pairs;
-  int n = 0;
-  while (search.tested < search.count) {
-    const int found = next_pairs(search, b.i + n, b.j + n, slot_ + n);
-    if constexpr (reach == Reach::grown)
-      n += without_gaps(plan, n, found);
-    else
-      for (const int last = n + found; n < last; ++n) slot_[n] -= first_[b.i[n]];
-    if (n <= block_size - pairs_at_once) continue;
-    finish<reach>(plan, n);
-    n = 0;
-  }
-  finish<reach>(plan, n);
+  const auto search = [&](double factor) { return pairs_.search(pass_.x, atom->radius, factor); };
+  const auto compute_block = [&](int n) { finish<reach>(plan, n); };
+  if constexpr (reach == Reach::touching) return each_overlap(kernels, search(1.0), *block_, place_, compute_block);
+  const double apart = neighbor->contactDistanceFactor;
+  const auto stands = [&](int i, int j, int place) {
+    const int slot = place - pairs_.first(i);
+    if (reach == Reach::grown ? closes_gap(plan, i, j, slot) : is_attached(plan, i, slot)) return true;
+    pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
+    return false;
+  };
+  const double factor = reach == Reach::grown ? plan.growth->factor() : apart * apart;
+  each_contact(kernels, search(factor), *block_, place_, stands, compute_block);
 }
 
 template <Reach reach>
 void PairLoop::finish(const Plan& plan, int n) {
-  constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;
-  if constexpr (adheres) n = without_parted(plan, n);
   if (n == 0) return;
   fetch(plan, n);
   pad(*block_, n);
-  (grown ? plan.grown : kernel_)(*block_, n, pass_);
+  (reach == Reach::grown ? plan.grown : kernel_)(*block_, n, pass_);
   if (plan.strain) note_strain(*plan.strain, *block_);
   const bool turns = plan.friction || plan.settings.rolling;
   if (plan.ledger)
@@ -161,74 +149,37 @@ void PairLoop::finish(const Plan& plan, int n) {
   if (plan.ledger && plan.books_friction) book_friction(*plan.ledger, n);
 }
 
-/// Keeps the contacts that overlap or are attached across a gap and returns their number; other pairs lose their mark.
-int PairLoop::without_parted(const Plan& plan, int n) {
-  Block& b = *block_;
-  const int size = pair_->dnum();
-  const double *const x = atom->x[0], *const radius = atom->radius;
-  int kept = 0;
-  for (int k = 0; k < n; ++k) {
-    const int i = b.i[k], j = b.j[k], slot = slot_[k];
-    const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
-    const double sum = radius[i] + radius[j];
-    if (!(dx * dx + dy * dy + dz * dz < sum * sum)) {
-      if (pair_->listgranhistory->firstneigh[i][slot] == 0) continue;
-      const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
-      if (!(h[plan.root] > 0.0) || pass_.now - h[plan.last_step] > 1.0) {
-        pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
-        continue;
-      }
-    }
-    b.i[kept] = i;
-    b.j[kept] = j;
-    slot_[kept++] = slot;
-  }
-  return kept;
+bool PairLoop::is_attached(const Plan& plan, int i, int slot) const {
+  if (pair_->listgranhistory->firstneigh[i][slot] == 0) return false;
+  const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
+  return h[plan.root] > 0.0 && pass_.now - h[plan.last_step] <= 1.0;
 }
 
-/// Of the `found` pairs behind the first n, keeps the pairs that overlap or whose growth closes a gap, and returns the
-/// number of kept pairs; other pairs lose their mark.
-int PairLoop::without_gaps(const Plan& plan, int n, int found) {
-  Block& b = *block_;
-  int kept = n;
-  for (int k = n; k < n + found; ++k) {
-    const int i = b.i[k], j = b.j[k], place = slot_[k], slot = (place < 0 ? ~place : place) - first_[i];
-    if (place < 0 && !closes_gap(plan, i, j, slot)) continue;
-    b.i[kept] = i;
-    b.j[kept] = j;
-    slot_[kept++] = slot;
-  }
-  return kept - n;
-}
-
-/// Whether growth closes the gap of a pair; else the pair loses its mark.
-bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) {
+bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) const {
   const double *const x = atom->x[0], *const radius = atom->radius;
   const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
-  const double rsq = dx * dx + dy * dy + dz * dz;
   const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
   const bool is_new = pass_.now - h[plan.last_step] > 1.0;
   const auto c = growing_pair(radius[i], radius[j], sums_of(pass_.sums, i), sums_of(pass_.sums, j),
                               is_new ? nullptr : h + pair_->dnum() - growth_values);
-  if (epdem::closes_gap(c, rsq, false)) return true;
-  pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
-  return false;
+  return epdem::closes_gap(c, dx * dx + dy * dy + dz * dz, false);
 }
 
 /// Gathers n contacts and marks them in LIGGGHTS's list.
 void PairLoop::fetch(const Plan& plan, int n) {
   Block& b = *block_;
-  const int size = pair_->dnum(), marked = flags_, *const slot = slot_;
+  const int size = pair_->dnum(), marked = flags_;
   int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;
   double** const histories = pair_->listgranhistory ? pair_->listgranhistory->firstdouble : nullptr;
   const auto history = [=, &b](long i, int k) {
     if (!histories) return;
-    double* const h = histories[i] + size * slot[k];
+    const int slot = place_[k] - pairs_.first(static_cast<int>(i));
+    double* const h = histories[i] + size * slot;
     __builtin_prefetch(h, 1);
     for (int line = 8; line < size - 8; line += 8) __builtin_prefetch(h + line, 1);
     __builtin_prefetch(h + size - 1, 1);
     b.history[k] = h;
-    int& flag = flags[i][slot[k]];
+    int& flag = flags[i][slot];
     if (flag != marked) flag |= marked;
   };
   const Spheres spheres{atom->f[0], atom->torque[0],          atom->radius, atom->rmass, atom->type,
@@ -236,85 +187,75 @@ void PairLoop::fetch(const Plan& plan, int n) {
   gather_pairs(b, pass_, n, spheres, {plan.constants.data(), plan.width, mixed_}, history);
 }
 
-/// Adds forces and torques in the order of the list; the sums of body i stay in registers while its pairs follow each
-/// other. books: each body of a pair gets half of the energies, and one loaded contact. Grown spheres also get the
-/// depths of their dents.
-template <bool torques, bool books, Reach reach>
-void PairLoop::scatter(const Plan& plan, int n) {
-  constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;
-  const Block& b = *block_;
-  Ledger* const ledger = plan.ledger;
-  double* const dents = grown ? plan.growth->sums() : nullptr;
-  double *const f = atom->f[0], *const t = atom->torque[0];
-  double *const work = books ? ledger->work() : nullptr, *const energy = books ? ledger->energy() : nullptr;
-  double *const loaded = books ? ledger->loaded() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
-  const bool gives_back = books && ledger->gives_back();
-  const int nlocal = atom->nlocal;
-  double others[13] = {};  // what a ghost gets is computed by its owner
-  for (int k = 0; k < n;) {
-    const int i = b.i[k];
-    double *const fi = f + 3 * i, *const ti = t + 3 * i;
-    double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
-    double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{};
+namespace {
+
+/// Beside forces: each body of a pair gets half of the energies, and one loaded contact; with growth the depths of its
+/// dents.
+template <bool books, bool adheres, bool grown>
+struct Beside {
+  const Block& b;
+  double* const dents;
+  double *const work, *const energy, *const loaded, *const parted;
+  const bool gives_back;
+  double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{};
+  long i = 0;
+  double others[7] = {};  // what a ghost gets is computed by its owner
+
+  Beside(const Block& block, const Plan& plan)
+      : b(block),
+        dents(grown ? plan.growth->sums() : nullptr),
+        work(books ? plan.ledger->work() : nullptr),
+        energy(books ? plan.ledger->energy() : nullptr),
+        loaded(books ? plan.ledger->loaded() : nullptr),
+        parted(books ? plan.ledger->adhesive() : nullptr),
+        gives_back(books && plan.ledger->gives_back()) {}
+
+  EPDEM_INLINE void begin(long body) {
+    i = body;
     if constexpr (books) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
     if constexpr (grown) cover_i = dents[3 * i], volume_i = dents[3 * i + 1], area_i = dents[3 * i + 2];
-    do {
-      const int j = b.j[k];
-      const bool ours = j < nlocal;
-      double* const fj = ours ? f + 3 * j : others;
-      const double gx = b.force[0].a[k], gy = b.force[1].a[k], gz = b.force[2].a[k];
-      fx += gx;
-      fy += gy;
-      fz += gz;
-      fj[0] -= gx;
-      fj[1] -= gy;
-      fj[2] -= gz;
-      if constexpr (torques) {
-        double* const tj = ours ? t + 3 * j : others + 3;
-        tx += b.torque_i[0].a[k];
-        ty += b.torque_i[1].a[k];
-        tz += b.torque_i[2].a[k];
-        tj[0] += b.torque_j[0].a[k];
-        tj[1] += b.torque_j[1].a[k];
-        tj[2] += b.torque_j[2].a[k];
+  }
+
+  EPDEM_INLINE void add(int k, long j, bool owned) {
+    if constexpr (books) {
+      const double lost = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0,
+                   stored = 0.5 * b.stored_energy.a[k];
+      const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
+      work_i += lost;
+      energy_i += stored;
+      loaded_i += bears;
+      *(owned ? work + j : others) += lost;
+      *(owned ? energy + j : others + 1) += stored;
+      *(owned ? loaded + j : others + 2) += bears;
+      if constexpr (adheres) {
+        parted[i] += 0.5 * b.adhesion_loss.a[k];
+        *(owned ? parted + j : others + 3) += 0.5 * b.adhesion_loss.a[k];
       }
-      if constexpr (books) {
-        const double grown = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0,
-                     stored = 0.5 * b.stored_energy.a[k];
-        const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
-        work_i += grown;
-        energy_i += stored;
-        loaded_i += bears;
-        *(ours ? work + j : others + 6) += grown;
-        *(ours ? energy + j : others + 7) += stored;
-        *(ours ? loaded + j : others + 8) += bears;
-        if constexpr (adheres) {
-          parted[i] += 0.5 * b.adhesion_loss.a[k];
-          *(ours ? parted + j : others + 9) += 0.5 * b.adhesion_loss.a[k];
-        }
-      }
-      if constexpr (grown) {
-        cover_i += b.cover_i.a[k];
-        volume_i += b.volume_i.a[k];
-        area_i += b.dented_area.a[k];
-        double* const dents_j = ours ? dents + 3 * j : others + 10;
-        dents_j[0] += b.cover_j.a[k];
-        dents_j[1] += b.volume_j.a[k];
-        dents_j[2] += b.dented_area.a[k];
-      }
-      ++k;
-    } while (k < n && b.i[k] == i);
-    fi[0] = fx;
-    fi[1] = fy;
-    fi[2] = fz;
-    if constexpr (torques) {
-      ti[0] = tx;
-      ti[1] = ty;
-      ti[2] = tz;
     }
+    if constexpr (grown) {
+      cover_i += b.cover_i.a[k];
+      volume_i += b.volume_i.a[k];
+      area_i += b.dented_area.a[k];
+      double* const dents_j = owned ? dents + 3 * j : others + 4;
+      dents_j[0] += b.cover_j.a[k];
+      dents_j[1] += b.volume_j.a[k];
+      dents_j[2] += b.dented_area.a[k];
+    }
+  }
+
+  EPDEM_INLINE void end(long) {
     if constexpr (books) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
     if constexpr (grown) dents[3 * i] = cover_i, dents[3 * i + 1] = volume_i, dents[3 * i + 2] = area_i;
   }
+};
+
+}  // namespace
+
+/// Adds forces and torques in the order of the list.
+template <bool torques, bool books, Reach reach>
+void PairLoop::scatter(const Plan& plan, int n) {
+  Beside<books, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan);
+  scatter_pairs<torques>(*block_, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
 }
 
 /// The work of friction with partial slip, in the order of the list.

@@ -8,7 +8,7 @@
 
 #include "growth.hpp"
 #include "host.hpp"
-#include "kernels/block.hpp"
+#include "kernels/pair_list.hpp"
 #include "ledger.hpp"
 #include "strain.hpp"
 
@@ -78,9 +78,8 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void gather(const Plan& plan);
   template <Reach reach>
   void finish(const Plan& plan, int n);
-  int without_parted(const Plan& plan, int n);
-  int without_gaps(const Plan& plan, int n, int found);
-  bool closes_gap(const Plan& plan, int i, int j, int slot);
+  bool is_attached(const Plan& plan, int i, int slot) const;
+  bool closes_gap(const Plan& plan, int i, int j, int slot) const;
   void fetch(const Plan& plan, int n);
   template <bool torques, bool books, Reach reach>
   void scatter(const Plan& plan, int n);
@@ -88,9 +87,9 @@ class PairLoop : protected LAMMPS_NS::Pointers {
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
-  int slot_[block_size + most_lanes];  // place in the neighbour list of i
-  std::vector<int> i_, j_, first_;     // pairs of all neighbour lists, and where the list of each sphere begins
-  LAMMPS_NS::bigint listed_ = -1;      // step in which LIGGGHTS made the lists
+  int place_[block_size + most_lanes];  // in the list
+  PairList pairs_;
+  LAMMPS_NS::bigint listed_ = -1;  // step in which LIGGGHTS made its lists
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
   int flags_ = 0;

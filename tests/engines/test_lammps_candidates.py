@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls in LAMMPS look only at spheres that can touch them: forces have the bits of walls that look at all spheres.
+
+With `neigh_modify delay 1`, LAMMPS does not test in each step whether new neighbor lists are due, and walls look at all
+spheres.
+"""
+
+import numpy as np
+import pytest
+from lammps_decks import column, needs_lammps, run
+
+pytestmark = needs_lammps
+
+LAW = "thornton 1e8 0.3 4e5 tangential history 0.5"
+UNION = "region a cone z 0 0 0.004 0.018 -0.02 0 open 1 open 2\nregion b cylinder z 0 0 0.018 0 0.02 open 1 open 2\n"
+WALLS = {
+    "planes": f"fix w all wall/ep zplane -0.019 0.019 {LAW}\n",
+    "two sides": f"fix w all wall/ep xplane 0 0 {LAW}\n",
+    "sphere": f"region r sphere 0 0 0 0.018\nfix w all wall/ep/region r {LAW}\n",
+    "union": f"{UNION}region r union 2 a b\nfix w all wall/ep/region r {LAW}\n",
+    "outside": f"region r block -0.006 0.006 -0.006 0.006 -0.006 0.006 side out\nfix w all wall/ep/region r {LAW}\n",
+    "moved": f"variable z equal 2.0*step*dt\nregion r plane 0 0 -0.019 0 0 1 move NULL NULL v_z\n"
+    f"fix w all wall/ep/region r {LAW}\n",
+    "vibrating": f"variable z equal 0.004*sin(800*step*dt)\nregion r block -0.03 0.03 -0.03 0.03 -0.014 0.014 "
+    f"move NULL NULL v_z\nfix w all wall/ep/region r {LAW}\n",
+    "turning": f"variable t equal 60*step*dt\nregion r block -0.014 0.014 -0.014 0.014 -0.014 0.014 "
+    f"rotate v_t 0.002 0 0 0 0 1\nfix w all wall/ep/region r {LAW}\n",
+    "growing": f"variable R equal 0.019-0.8*step*dt\nregion r sphere 0 0 0 v_R\nfix w all wall/ep/region r {LAW}\n",
+}
+
+
+def deck(wall, delay):
+    """27 fast spheres that meet walls alone, because pairs are excluded."""
+    return f"""units si
+atom_style sphere
+atom_modify map array sort 0 0
+comm_modify vel yes
+boundary f f f
+region box block -0.1 0.1 -0.1 0.1 -0.1 0.1 units box
+create_box 1 box
+region inner block -0.009 0.009 -0.009 0.009 -0.009 0.009 units box
+lattice sc 0.006 origin 0.5 0.5 0.5
+create_atoms 1 region inner
+lattice none 1.0
+set group all diameter 0.002 density 2500
+velocity all create 1 4711 dist gaussian loop geom
+velocity all scale 3e19
+pair_style ep
+pair_coeff * * {LAW}
+neighbor 0.001 bin
+neigh_modify delay {delay} every 1 check yes exclude group all all
+{wall}fix motion all nve/sphere
+timestep 2e-6
+thermo_style custom step atoms ke f_w[1] f_w[2] f_w[3]
+thermo_modify lost ignore format float %.17g
+thermo 1
+run 2000
+"""
+
+
+@pytest.mark.parametrize("what", WALLS)
+def test_candidates_give_the_bits_of_all_spheres(what, tmp_path):
+    some, _ = run(deck(WALLS[what], 0), tmp_path / "some")
+    every, _ = run(deck(WALLS[what], 1), tmp_path / "all")
+    forces = np.array([column(every, f"f_w[{axis}]") for axis in (1, 2, 3)])
+    assert np.count_nonzero(np.abs(forces).max(axis=0)) > 10, "too few impacts"
+    for value in ("f_w[1]", "f_w[2]", "f_w[3]", "KinEng"):
+        assert np.array_equal(column(some, value), column(every, value)), value
