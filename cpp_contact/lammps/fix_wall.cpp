@@ -9,6 +9,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
+#include "epdem/adhesive.hpp"
 #include "epdem/compaction.hpp"
 #include "error.h"
 #include "force.h"
@@ -212,8 +213,7 @@ bool FixWall::stands(int i, const Contact& contact) {
   const double* history = nullptr;
   for (int k = 0; k < count_[i]; ++k)
     if (record(i, k)[0] == contact.part) history = record(i, k) + 1;
-  if (layout_.growth < 0)
-    return history && (history[layout_.root] > 0.0 || (pass_.repeats && history[layout_.jump] != 0.0));
+  if (layout_.growth < 0) return history && is_attached(history[layout_.root], history[layout_.jump], pass_.repeats);
   if (pass_.repeats && !history) return false;
   const double radius = atom->radius[i];
   const auto c = growing_at_wall(radius, sums_of(pass_.sums, i), history ? history + layout_.growth : nullptr);

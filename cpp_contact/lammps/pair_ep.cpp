@@ -8,6 +8,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
+#include "epdem/adhesive.hpp"
 #include "epdem/compaction.hpp"
 #include "error.h"
 #include "force.h"
@@ -254,8 +255,7 @@ void PairEp::gather() {
 /// once more has the attachment and the growth that it had.
 bool PairEp::stands(int i, int j, const double* history) const {
   const bool known = history && pass_.now - history[layout_.last_step] <= 1.0;
-  if (layout_.growth < 0)
-    return known && (history[layout_.root] > 0.0 || (pass_.repeats && history[layout_.jump] != 0.0));
+  if (layout_.growth < 0) return known && is_attached(history[layout_.root], history[layout_.jump], pass_.repeats);
   if (pass_.repeats && !known) return false;
   const double *const x = pass_.x, ri = atom->radius[i], rj = atom->radius[j];
   const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];

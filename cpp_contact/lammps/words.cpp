@@ -255,7 +255,7 @@ Coefficients mixed(const Coefficients& a, const Coefficients& b) {
 
 void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common, double* constants,
                    double* constants_ji) {
-  const bool i_is_softer = law.strength < 0 || i.parameters[law.strength] <= j.parameters[law.strength];
+  const bool i_is_softer = law.strength < 0 || is_softer(i.parameters[law.strength], j.parameters[law.strength]);
   std::vector<double> parameters = (i_is_softer ? i : j).parameters;
   for (int k = 0; k < law.parameter_count; ++k)
     if (law.parameters[k].of_pair)

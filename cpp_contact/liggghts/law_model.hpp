@@ -107,7 +107,7 @@ class LawModel : public NormalModel {
       if (has_step() && now_ - s.contact_history[step_slot_] > keep) return false;
       State<Law> before;
       std::memcpy(static_cast<void*>(&before), s.contact_history + offset_, sizeof before);
-      return before.root > 0.0 || (before.jump != 0.0 && !keep);
+      return is_attached(before.root, before.jump, !keep);
     }
   }
 

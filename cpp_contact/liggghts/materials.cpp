@@ -103,7 +103,7 @@ std::vector<double> parameters_of(const Reader& reader, const Declaration& law, 
   const int low = std::min(i, j), high = std::max(i, j);
   const ParameterTable* const strength = law.strength < 0 ? nullptr : &tables[law.strength];
   const bool strength_per_type = strength && strength->per_type();
-  const int softer = strength_per_type && strength->of_type(high) < strength->of_type(low) ? high : low;
+  const int softer = !strength_per_type || is_softer(strength->of_type(low), strength->of_type(high)) ? low : high;
   for (size_t k = 0; k < tables.size(); ++k) {
     const ParameterTable& t = tables[k];
     if (!t.per_type()) {

@@ -132,7 +132,8 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     if (!p.strength) return m1;
     const int at = epdem::in_yade::place_of(p.strength);
     const double s1 = m1.lawValues[at], s2 = m2.lawValues[at];
-    return std::isnan(s2) || s2 < s1 || (s2 == s1 && m2.id < m1.id) ? m2 : m1;
+    if (s2 == s1 && m2.id < m1.id) return m2;
+    return std::isnan(s2) || !epdem::is_softer(s1, s2) ? m2 : m1;
   }
 };
 REGISTER_SERIALIZABLE(Ip2_EpMat_EpMat_EpPhys);

@@ -223,12 +223,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
         history.growth = epdem::growing_at_wall(c.radius_i, sums_of(swapped ? s2 : s1), state);
       else
         history.growth = epdem::growing_pair(c.radius_i, c.radius_j, sums_of(s1), sums_of(s2), state);
-      if (!(c.overlap > 0.0) && !closes_gap(history.growth, c.distance * c.distance, false)) return false;
-    } else if constexpr (epdem::adheres<Law>) {
-      if (!(c.overlap > 0.0 || history.law.root > 0.0)) return false;
-    } else {
-      if (!(c.overlap > 0.0)) return false;
     }
+    if (!epdem::exists<Law>(c.overlap, c.distance * c.distance, history.law, history.growth)) return false;
     if (phys.frictionId == Friction::id) load(phys, friction_at, history.friction);
     phys.frictionId = Friction::id;
     if (rollingModel_ != 0) load(phys, rolling_at, history.rolling);

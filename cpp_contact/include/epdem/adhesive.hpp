@@ -112,4 +112,11 @@ inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept 
 }
 
 }  // namespace adhesive
+
+/// Whether bodies across a gap are attached, by `root` and `jump` of the history of a law with adhesion. A step that is
+/// evaluated once more also counts bodies that have just parted, whose last force acts.
+inline bool is_attached(double root, double jump, bool repeats) noexcept {
+  return root > 0.0 || (repeats && jump != 0.0);
+}
+
 }  // namespace epdem

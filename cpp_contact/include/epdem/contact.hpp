@@ -35,7 +35,7 @@ inline ContactConstants<Law> of_law(const Law& law) noexcept {
   return pair;
 }
 
-/// Nobody looks at what a contact does inside.
+/// Observer that records nothing.
 struct NoObserver {
   template <class... Any>
   void normal(const Any&...) const noexcept {}
@@ -200,6 +200,21 @@ EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
 }
 
 }  // namespace detail
+
+/// Whether bodies are in contact: they overlap, are attached across a gap, or have grown across it. rsq: squared
+/// distance of the centres, or of centre and wall; growth: a Growing with compaction.
+template <class Law, class Growth>
+inline bool exists(double overlap, double rsq, const State<Law>& before, const Growth& growth,
+                   bool repeats = false) noexcept {
+  if (overlap > 0.0) return true;
+  (void)before;
+  if constexpr (!std::is_same_v<Growth, NoGrowth>)
+    return closes_gap(growth, rsq, repeats);
+  else if constexpr (adheres<Law>)
+    return is_attached(before.root, before.jump, repeats);
+  else
+    return false;
+}
 
 /// One contact. `history` holds the values before the step, then the values after the step.
 template <class Friction, bool wall, class Law, class RollingHistory, class Growth, class Mass, class Observer>

@@ -32,6 +32,10 @@ inline double effective_shear_modulus(Elastic i, Elastic j) noexcept {
   return 1.0 / (compliance(i) + compliance(j));
 }
 
+/// Whether body i is the softer of a pair, whose parameters a contact has: the body with the lower strength [Pa], at
+/// equal strengths the first.
+inline bool is_softer(double strength_i, double strength_j) noexcept { return !(strength_j < strength_i); }
+
 /// Share of the strain of a contact that body i takes, from the strengths of both bodies [Pa]: 1/2 if they are equal, 1
 /// if the strength of j is at least `hardening` times that of i, so that j never yields; both shares have the sum 1.
 /// hardening: pressure of full plasticity over pressure of first yield, above 1.
@@ -40,7 +44,7 @@ inline double strain_share(double strength_i, double strength_j, double hardenin
   const double high = strength_i < strength_j ? strength_j : strength_i;
   const double t = high > low ? std::fmin(1.0, (high / low - 1.0) / (hardening - 1.0)) : 0.0;
   const double softer = 0.5 * (1.0 + t);
-  return strength_i <= strength_j ? softer : 1.0 - softer;
+  return is_softer(strength_i, strength_j) ? softer : 1.0 - softer;
 }
 
 /// What a contact knows of its two bodies apart.

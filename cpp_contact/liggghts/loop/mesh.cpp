@@ -61,7 +61,7 @@ class NearSpheres {
   }
 
  private:
-  static inline const double reach = 1.0 + 1e-6;  // far above round-off
+  static constexpr double reach = 1.0 + 1e-6;  // far above round-off
 
   struct Near {
     int triangle, count;
@@ -70,7 +70,7 @@ class NearSpheres {
 
   void take(TriMesh& mesh, const std::vector<LAMMPS_NS::TriangleNeighlist>& lists, int owned) {
     search_ = mesh_searches;
-    static std::vector<int> place;  // of a sphere in spheres_
+    std::vector<int>& place = place_;
     place.assign(owned, -1);
     spheres_.clear();
     listed_.clear();
@@ -144,6 +144,7 @@ class NearSpheres {
 
   long search_ = -1;                  // of which the lists are
   std::vector<int> spheres_;          // each once
+  std::vector<int> place_;            // of a sphere in spheres_
   std::vector<double> now_, before_;  // rows of position and radius: in this step, and when the short lists were made
   std::vector<double> corners_;       // then, of a mesh that moves
   std::vector<Near> listed_, triangles_;
@@ -157,23 +158,20 @@ struct Touching {
   std::vector<int> spheres, before;
 };
 
-Touching* touching = nullptr;    // of the mesh over which a loop of ours runs
-OurWall* active_wall = nullptr;  // the wall of our models over which a loop runs
-bool ours = false;               // whether it is a mesh wall, and the loop ours
-
-/// While LIGGGHTS's loop over a wall runs.
+/// While LIGGGHTS's loop over a wall runs; nullptr: not a wall of our models.
 class ScopedWall {
  public:
-  ScopedWall(LIGGGHTS::Walls::IGranularWall* impl, FixWallGran& wall) {
-    active_wall = dynamic_cast<OurWall*>(impl);
-    if (active_wall) active_wall->open(wall);
+  ScopedWall(BatchedWall* wall, FixWallGran& fix) : wall_(wall) {
+    if (wall_) wall_->open(fix);
   }
   ScopedWall(const ScopedWall&) = delete;
   ScopedWall& operator=(const ScopedWall&) = delete;
   ~ScopedWall() {
-    if (active_wall) active_wall->close();
-    active_wall = nullptr;
+    if (wall_) wall_->close();
   }
+
+ private:
+  BatchedWall* const wall_;
 };
 
 /// Whether only the contacts of the step before are marked: that was a step of our loop, and no list was made since.
@@ -181,9 +179,43 @@ bool settled(const Touching& contacts, const LAMMPS_NS::Update& update, const LA
   return contacts.step == update.ntimestep - 1 && lists.lastcall != update.ntimestep;
 }
 
+/// Access to the protected members of LIGGGHTS's contacts with a mesh.
+struct Contacts : FixContactHistoryMesh {
+  static int* count(FixContactHistoryMesh& of) { return of.*(&Contacts::npartner_); }
+  static int* triangles(FixContactHistoryMesh& of, int i) { return (of.*(&Contacts::partner_))[i]; }
+  static bool* marks(FixContactHistoryMesh& of, int i) { return (of.*(&Contacts::keepflag_))[i]; }
+  static bool* intersects(FixContactHistoryMesh& of, int i) { return (of.*(&Contacts::intersectflag_))[i]; }
+  static double* history(FixContactHistoryMesh& of, int i) { return (of.*(&Contacts::contacthistory_))[i]; }
+  static int values(FixContactHistoryMesh& of) { return of.*(&Contacts::dnum_); }
+
+  /// As markAllContacts of LIGGGHTS, for the spheres that had contacts in the step before.
+  static void unmark(FixContactHistoryMesh& of, const std::vector<int>& spheres) {
+    for (const int i : spheres)
+      for (int k = 0, left = count(of)[i]; left > 0; ++k) {
+        if (triangles(of, i)[k] < 0) continue;
+        marks(of, i)[k] = false;
+        --left;
+      }
+  }
+
+  /// As cleanUpContacts of LIGGGHTS, for the same spheres.
+  static void end_unmarked(FixContactHistoryMesh& of, const std::vector<int>& spheres) {
+    for (const int i : spheres)
+      for (int k = 0, left = count(of)[i]; left > 0; ++k) {
+        if (triangles(of, i)[k] < 0) continue;
+        --left;
+        if (marks(of, i)[k]) continue;
+        --count(of)[i];
+        triangles(of, i)[k] = -1;
+        intersects(of, i)[k] = false;
+        std::fill_n(history(of, i) + k * values(of), values(of), 0.0);
+      }
+  }
+};
+
 }  // namespace
 
-struct OfMesh {
+struct MeshState {
   NearSpheres near;
   Touching touching;
 };
@@ -196,32 +228,37 @@ namespace loop = epdem::liggghts::loop;
 
 [[gnu::visibility("default")]] void FixWallGran::post_force_primitive(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran20post_force_primitiveEi");
-  const loop::ScopedWall work(impl, *this);
+  const loop::ScopedWall work(dynamic_cast<loop::BatchedWall*>(impl), *this);
   original(this, vflag);
 }
 
 [[gnu::visibility("default")]] void FixWallGran::post_force_mesh(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
-  const loop::ScopedWall work(impl, *this);
-  loop::ours = loop::active_wall && !loop::generic_loop() && epdem::liggghts::library_matches(lmp) &&
-               neighbor->contactDistanceFactor == 1.0 && atom->sphere_flag && !atom->shapetype_flag && atom->nlocal > 0;
+  auto* const wall = dynamic_cast<loop::BatchedWall*>(impl);
+  const loop::ScopedWall work(wall, *this);
+  bool batched_mesh_loop = wall && !loop::generic_loop() && epdem::liggghts::library_matches(lmp) &&
+                           neighbor->contactDistanceFactor == 1.0 && atom->sphere_flag && !atom->shapetype_flag &&
+                           atom->nlocal > 0;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
-    loop::ours &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
+    batched_mesh_loop &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
   }
-  if (!loop::ours) return original(this, vflag);
+  if (!batched_mesh_loop) return original(this, vflag);
   const loop::SphereKernels& kernels = loop::sphere_kernels(lmp);
   LIGGGHTS::ContactModels::SurfacesIntersectData contact;
   contact.is_wall = true;
-  auto& kept = loop::active_wall->meshes;
+  auto& kept = wall->meshes;
   kept.resize(n_FixMesh_);
   for (int m = 0; m < n_FixMesh_; ++m) {
     FixMeshSurface& fix = *FixMesh_list_[m];
     TriMesh& mesh = *fix.triMesh();
     FixContactHistoryMesh* const history = fix.contactHistory();
-    if (!kept[m]) kept[m] = std::make_shared<loop::OfMesh>();
-    loop::touching = &kept[m]->touching;
-    if (history) history->markAllContacts();
+    if (!kept[m]) kept[m] = std::make_shared<loop::MeshState>();
+    loop::Touching& touching = kept[m]->touching;
+    touching.before.swap(touching.spheres);
+    touching.spheres.clear();
+    const bool settled = loop::settled(touching, *update, *neighbor);
+    if (history) settled ? loop::Contacts::unmark(*history, touching.before) : history->markAllContacts();
     if (store_force_contact_) fix_wallforce_contact_ = fix.meshforceContact();
     if (store_force_contact_stress_) fix_wallforce_contact_stress_ = fix.meshforceContactStress();
     atom_type_wall_ = fix.atomTypeWall();
@@ -241,7 +278,7 @@ namespace loop = epdem::liggghts::loop;
       if (!(gap <= 0.0)) return;
       if (history) {
         if (!history->handleContact(i, mesh.id(triangle), contact.contact_history, true, side == face)) return;
-        loop::touching->spheres.push_back(i);
+        touching.spheres.push_back(i);
       }
       for (int x = 0; x < 3; ++x) {
         if (v)
@@ -251,47 +288,10 @@ namespace loop = epdem::liggghts::loop;
       contact.deltan = -gap;
       impl->compute_force(this, contact, true, v_wall, &fix, m, &mesh, triangle);
     });
-    if (history) history->cleanUpContacts();
+    if (!history) continue;
+    settled ? loop::Contacts::end_unmarked(*history, touching.before) : history->cleanUpContacts();
+    touching.step = update->ntimestep;
   }
-  loop::ours = false;
-}
-
-[[gnu::visibility("default")]] void FixContactHistoryMesh::markAllContacts() {
-  static const auto original =
-      loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15markAllContactsEv");
-  if (!loop::ours) return original(this);
-  loop::Touching& contacts = *loop::touching;
-  contacts.before.swap(contacts.spheres);
-  contacts.spheres.clear();
-  if (!loop::settled(contacts, *update, *neighbor)) return original(this);
-  for (const int i : contacts.before)
-    for (int k = 0, left = npartner_[i]; left > 0; ++k) {
-      if (partner_[i][k] < 0) continue;
-      keepflag_[i][k] = false;
-      --left;
-    }
-}
-
-[[gnu::visibility("default")]] void FixContactHistoryMesh::cleanUpContacts() {
-  static const auto original =
-      loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15cleanUpContactsEv");
-  if (!loop::ours) return original(this);
-  loop::Touching& contacts = *loop::touching;
-  if (!loop::settled(contacts, *update, *neighbor)) {
-    original(this);
-  } else {
-    for (const int i : contacts.before)
-      for (int k = 0, left = npartner_[i]; left > 0; ++k) {
-        if (partner_[i][k] < 0) continue;
-        --left;
-        if (keepflag_[i][k]) continue;
-        --npartner_[i];
-        partner_[i][k] = -1;
-        intersectflag_[i][k] = false;
-        std::fill_n(contacthistory_[i] + k * dnum_, dnum_, 0.0);
-      }
-  }
-  contacts.step = update->ntimestep;
 }
 
 }  // namespace LAMMPS_NS

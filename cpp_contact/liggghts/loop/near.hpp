@@ -13,7 +13,7 @@ kernels::NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double s
 /// How many times this rank has searched the neighbours of a mesh.
 extern long mesh_searches;
 
-/// What a mesh keeps to its family.
+/// Access to protected members of TriMesh.
 struct Triangles : LAMMPS_NS::TriMesh {
   static kernels::TrianglePlanes planes(LAMMPS_NS::TriMesh& mesh, int triangle) {
     double** const nodes = (mesh.*(&Triangles::node_))(triangle);

@@ -13,19 +13,19 @@
 
 namespace epdem::liggghts::loop {
 
-/// What mesh.cpp keeps of a mesh of a wall.
-struct OfMesh;
+/// State of the loop over a mesh of a wall, of mesh.cpp.
+struct MeshState;
 
-/// What LIGGGHTS's loops over walls know of ours; mesh.cpp stands around them.
-class OurWall {
+/// A wall whose contacts are computed in blocks, as LIGGGHTS's loops over walls see it; mesh.cpp stands around them.
+class BatchedWall {
  public:
-  virtual ~OurWall() = default;
+  virtual ~BatchedWall() = default;
 
   /// Before and after LIGGGHTS's loop over the spheres at a wall.
   virtual void open(LAMMPS_NS::FixWallGran& wall) = 0;
   virtual void close() = 0;
 
-  std::vector<std::shared_ptr<OfMesh>> meshes;
+  std::vector<std::shared_ptr<MeshState>> meshes;
 };
 
 /// The contacts of walls, noted one by one.
@@ -59,7 +59,7 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   int n_ = 0;
 };
 
-class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Planned {
+class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, private Planned {
   using Base = LIGGGHTS::Walls::Granular<Model>;
 
  public:
