@@ -85,4 +85,4 @@ def test_a_library_of_another_version_is_told_before_what_it_lacks(monkeypatch):
     monkeypatch.setattr(declarations.ctypes, "CDLL", lambda path: older)
     sentence = f"ABI {declarations.ABI - 1}, this package needs {declarations.ABI}; run 'make setup'"
     with pytest.raises(EngineError, match=sentence):
-        declarations.loaded.__wrapped__()
+        declarations.load_library.__wrapped__()

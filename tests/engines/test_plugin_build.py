@@ -69,7 +69,6 @@ def test_the_plugin_exports_only_the_functions_that_it_takes_over():
         *["AtomVecSphere"] * 2,
         "FixNeighlistMesh",
         "FixContactHistory",
-        *["FixContactHistoryMesh"] * 2,
         *["Neighbor"] * 3,
     ]
 

