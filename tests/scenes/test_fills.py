@@ -6,7 +6,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from parts_cases import BED, GLASS, STEEL, parts
+from parts_cases import BED, GLASS, STEEL, own, parts
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
@@ -74,3 +74,21 @@ def test_a_size_below_half_a_sphere_is_named(kind, tmp_path):
     place = "scene.particles.0" if kind == "settle" else "scene.fill.bed.particles.0"
     assert any(s.startswith(f"{place}: 0 spheres with radius 0.0025 m") for s in said)
     assert GLASS != STEEL
+
+
+@pytest.mark.parametrize("kind", ["compaction", "drum", "hopper", "settle", "peening"])
+def test_mixtures_of_a_kind_have_exact_numbers(kind):
+    """Numbers in the ratio of share over the mass of a sphere, whole, of their given sum, with every seed."""
+    names = {"compaction": "compaction_powder", "drum": "drum_beads", "hopper": "hopper_beads"}
+    data = own(names.get(kind, {"settle": "settle_glass", "peening": "peening_steel"}.get(kind, "")))
+    material = data["scene"]["particles"][0]["material"]
+    radius = parse(data).parts.filled[0].radii()[1]
+    shares = {radius: 0.37, 0.7 * radius: 0.5, 0.5 * radius: 0.13}
+    data["scene"]["particles"] = [component(material, r, share) for r, share in shares.items()]
+    data["scene"]["count"] = 101
+    weights = {r: share / r**3 for r, share in shares.items()}
+    wanted = {r: 101 * w / sum(weights.values()) for r, w in weights.items()}
+    p = plan(parse(data))
+    found = {f.particles[0].radius: f.count for f in p.insertions}
+    assert all(len(f.particles) == 1 for f in p.insertions) and sum(found.values()) == 101
+    assert all(abs(found[r] - n) < 1 for r, n in wanted.items())

@@ -43,7 +43,7 @@ SMALL = {
         "duration": "0.05 s",
     },
     "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
-    "peening": {"count": 20, "width": "4 mm", "duration": "0.5 ms"},
+    "peening": {"count": 40, "width": "4 mm", "duration": "0.5 ms"},
     "parts": {},
 }
 

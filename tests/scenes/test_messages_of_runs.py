@@ -93,14 +93,14 @@ def test_frames_and_rows_of_scenes(tmp_path):
         yade_tables.particles(q, tmp_path)
     shutil.copytree(STORED / "settle", tmp_path / "run")
     whole = scene_tables.particles(p, tmp_path / "run")
-    with says("the frame of step 1260 is damaged; run the case again"):
+    with says("the frame of step 1250 is damaged; run the case again"):
         columns.whole(p, whole.assign(radius=-1.0), tmp_path)
-    raw = pd.DataFrame([{"step": 1260, "wall": "", "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}])
-    with says("the contacts of step 1260 are damaged: no such spheres; run the case again"):
+    raw = pd.DataFrame([{"step": 1250, "wall": "", "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}])
+    with says("the contacts of step 1250 are damaged: no such spheres; run the case again"):
         columns.complete(p, raw, whole, tmp_path)
-    shutil.copy(STORED / "hopper/particles.2800.bin", tmp_path / "two.bin")
+    shutil.copy(STORED / "hopper/particles.2000.bin", tmp_path / "two.bin")
     with (tmp_path / "two.bin").open("ab") as stream:
-        stream.write((STORED / "hopper/particles.2800.bin").read_bytes())
+        stream.write((STORED / "hopper/particles.2000.bin").read_bytes())
     with says("two.bin: not one frame of 10 columns; run the case again"):
         scene_tables._frame(tmp_path / "two.bin", 10)
 

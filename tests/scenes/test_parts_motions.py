@@ -13,7 +13,6 @@ from epdem.case.scene import parse
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import scene_tables as tables
-from epdem.engines.liggghts.scene_deck import files as deck_of
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
@@ -88,13 +87,13 @@ def test_a_plate_stops_where_it_was_to_and_its_step_of_time_is_its_own(tmp_path)
     outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
     last, rows = outcome.results.particles, outcome.results.rows
     top = last[last["step"] == last["step"].max()].eval("z + radius").max()
-    assert rows["time"].iloc[-1] == pytest.approx(0.075, rel=0.03)  # 30 mm at 0.4 m/s
-    assert rows["time"].iloc[-1] == pytest.approx(1e-5 * rows["step"].iloc[-1])
+    assert rows["time"].iloc[-1] == pytest.approx(0.075, rel=1e-9)  # 30 mm at 0.4 m/s
+    assert 0.9e-5 * rows["step"].iloc[-1] < rows["time"].iloc[-1] <= 1e-5 * rows["step"].iloc[-1]
     assert top < 39e-3 - 30e-3 + 0.5e-3 * 3  # under the plate, but for overlaps
 
 
-def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths_are_said():
-    """2 mm at 0.1 m/s after 80 ms; a step of time that is given is not changed, and then the way may be longer."""
+def test_a_wall_that_moves_last_goes_no_farther_than_it_should():
+    """2 mm at 0.1 m/s after 80 ms, also where a step of time is given."""
     up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}
     last = {"name": "lift", "duration": "1 s", "move": [up], "until": {"wall": "lid", "travel": "2 mm"}}
     data = parts(wall=[FLOOR, BOX, PLATE | {"center": ["0 mm", "0 mm", "37 mm"]}], phase=[FALL, last])
@@ -103,10 +102,8 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths
     given = plan(parse(data | {"numerics": {"time_step": "1.17e-5 s"}}))
     p = plan(parse(data | {"numerics": {"error": 0.02}}))
     lengths = [float(table.eval("end_time - begin_time").iloc[-1]) for table in (given.phase_table, p.phase_table)]
-    assert lengths[0] > 0.021 and lengths[1] == pytest.approx(0.02, rel=0.02)
-    (said,) = planned_warnings(given)
-    assert said.startswith(f"scene.phase.lift takes {lengths[0]:.4g} s, not 0.02 s")
-    assert not planned_warnings(p)
+    assert lengths[0] == pytest.approx(0.02, rel=1e-3) and lengths[1] == pytest.approx(0.02, rel=1e-9)
+    assert not planned_warnings(given) and not planned_warnings(p)
 
 
 @pytest.mark.parametrize(
@@ -130,7 +127,7 @@ def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(engine, t
             "until": {"wall": "lid", "force": "0.1 N", "after": "0 s"},
             "move": [hold],
         },
-        {"name": "hold", "duration": "0.1 s", "move": [hold]},
+        {"name": "hold", "duration": "0.3 s", "move": [hold]},
     ]
     data = parts(wall=[BOX, lid], fill=[bed], phase=phases) | {"viscous": {"restitution": 0.4}}
     data["output"] = {"rows": 800, "particles": 2, "loads": True, "restarts": 0}
@@ -225,14 +222,6 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
 def test_a_motion_or_an_end_that_cannot_be_is_refused(change, words):
     with pytest.raises(CaseError, match=words):
         plan(parse(parts(wall=[FLOOR, PLATE], phase=[FALL | change])))
-
-
-def test_a_vibration_goes_on_with_its_step_of_time_if_its_work_is_counted():
-    data = moved("vibrate")
-    data["scene"]["phase"][2]["time_step"] = "1e-5 s"
-    with pytest.raises(CaseError, match=r"phase.on.time_step: wall lid vibrates on .* give both phases the same one"):
-        deck_of(plan(parse(data)))
-    deck_of(plan(parse(data | {"output": {"rows": 20}})))
 
 
 def test_a_motion_counts_for_the_highest_speed():

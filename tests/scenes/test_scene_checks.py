@@ -110,9 +110,9 @@ def test_stiffness_and_work_of_a_press_are_those_of_its_force_curve():
     way = s.box[2] - s.height
 
     def force(step):
-        middle = np.maximum(step - 0.5 * p.every, 0) * p.time_step
-        down = s.speed * np.minimum(middle, turn * p.time_step)
-        up = s.unload_speed * np.maximum(middle - turn * p.time_step, 0)
+        middle = np.maximum(step - 0.5 * p.every, 0)
+        down = s.speed * np.minimum(middle, turn) * p.phases[0].time_step
+        up = s.unload_speed * np.maximum(middle - turn, 0) * p.phases[1].time_step
         return np.maximum(k * down - k_back * up, 0)
 
     table = rows(p, plate_force=force)
@@ -187,8 +187,9 @@ def test_a_row_of_a_press_has_the_height_in_the_middle_of_its_interval():
     """Down from 0.6 mm at 4 m/s, then up at 2 m/s: the force of a row is a mean over the interval before it."""
     p = planned("compaction")
     table, turn = rows(p, plate_force=1.0), p.phases[0].end
-    middle = (table["step"] - 0.5 * p.every) * p.time_step
-    down, up = 6e-4 - 4.0 * middle, 6e-4 - 4.0 * turn * p.time_step + 2.0 * (middle - turn * p.time_step)
+    middle, (first, second) = table["step"] - 0.5 * p.every, (phase.time_step for phase in p.phases)
+    down = 6e-4 - 4.0 * middle * first
+    up = 6e-4 - 4.0 * turn * first + 2.0 * (middle - turn) * second
     expected = np.where(table["step"] <= turn, down, up)[1:]
     assert table["plate_z"].to_numpy()[1:] == pytest.approx(expected, rel=1e-9)
     assert table["stress"].to_numpy() == pytest.approx(1.0 / 4e-4**2)

@@ -16,6 +16,8 @@ from epdem.studies.pages import write_scene_page
 
 pytestmark = pytest.mark.figures
 
+BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "12 mm"], "size": ["17.9 mm", "17.9 mm"]}
 TUBE = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
 
 
@@ -89,3 +91,35 @@ def test_figures_and_tables_have_one_name_for_one_thing(outcome, page):
         label = panel.y.label
         assert label in named or {f"{label}_{axis}" for axis in "xyz"} <= named or label == "energy", label
         assert panel.x.label == "time"
+
+
+def lid(speed: float) -> dict:
+    return {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", f"{speed} m/s"]}
+
+
+@pytest.mark.liggghts
+def test_a_press_of_parts_has_force_over_displacement_and_time_has_the_ends_of_phases(tmp_path):
+    """6.6 mm down at 0.2 m/s from 20 ms on, then 1.4 mm back; places are those of the middle of each row."""
+    phases = [{"name": "fall", "duration": "20 ms"}]
+    phases += [
+        {"name": name, "duration": t, "move": [lid(v)]} for name, t, v in (("down", "33 ms", -0.2), ("up", "7 ms", 0.2))
+    ]
+    walls = [BOX | {"material": "steel", "open": ["+z"]}, LID | {"material": "steel"}]
+    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "11.9 mm"]}, "count": 66}
+    data = parts(wall=walls, fill=[bed], phase=phases) | {"output": {"rows": 60, "particles": 2, "loads": True}}
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    found = {chart.name: chart for chart in charts(outcome)}
+    (panel,) = found["key"].panels
+    assert (panel.x.label, panel.y.label) == ("displacement of lid", "force on lid")
+    rows = outcome.results.rows.iloc[1:]
+    middle = (rows["time"] - 0.5e-3).to_numpy()
+    place = np.where(middle < 0.053, 0.2 * (middle - 0.02), 6.6e-3 - 0.2 * (middle - 0.053))
+    for series, (begin, end) in zip(panel.series, ((0.02, 0.053), (0.053, 0.06)), strict=True):
+        during = ((middle > begin) & (middle < end)).nonzero()
+        assert series.x == pytest.approx(place[during], abs=1e-9)
+        assert series.y == pytest.approx(rows["lid_force_z"].to_numpy()[during], abs=1e-12)
+    assert [series.name for series in panel.series] == ["down", "up"] and max(panel.series[0].y) > 0.1
+    for name in ("scene",):
+        for panel in found[name].panels:
+            ends = [series.x for series in panel.series if series.dash == "dot"]
+            assert ends == [pytest.approx([t, t]) for t in (0.02, 0.053)]

@@ -108,7 +108,7 @@ def test_a_time_step_that_no_contact_bears_is_named(factor, said):
     stable = 2 * math.sqrt(m_star / (2 * E_star * math.sqrt(R_star * overlap)))
     data = parts(wall=[FLOOR | {"material": "glass"}]) | {"numerics": {"time_step": f"{factor * stable} s"}}
     data["materials"] = {"glass": GLASS | {"yield_stress": "9 MPa"}}
-    assert ["impact at the scene's highest speed is stable" in x for x in warnings_of(data)] == [True] * said
+    assert sum("impact at the scene's highest speed is stable" in x for x in warnings_of(data)) == said
 
 
 @given(st.floats(0.0, 0.8), st.booleans())

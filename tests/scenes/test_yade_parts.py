@@ -90,10 +90,13 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
         outcome = run(write_case(data, tmp_path), engine=engine, out=tmp_path / engine)
         found[engine] = outcome.results
     one, other = (r.particles.set_index(["step", "id"]) for r in found.values())
-    assert one.index.equals(other.index) and len(one) == 4 * 11
+    assert one.index.equals(other.index) and len(one) == 4 * 13  # rows of 125 steps end both phases
     speeds = ["vx", "vy", "vz"]
     assert np.abs(one[["x", "y", "z"]] - other[["x", "y", "z"]]).to_numpy().max() < 1e-6
-    assert np.abs(one[speeds] - other[speeds]).to_numpy().max() < 2e-4
+    difference = np.abs(one[speeds] - other[speeds]).max(axis=1)
+    assert (
+        difference.max() < 2e-3 and difference.loc[other.index[-1][0]].max() < 5e-5
+    )  # half a step of a contact, after
     assert other.loc[other.index[-1][0], "vz"].max() > 0.3  # something rebounds
     assert not one.xs(3, level="id")[speeds].to_numpy().any()  # the frozen one
     loads = [f"lid_force_{axis}" for axis in "xyz"] + ["floor_force_z"]

@@ -137,7 +137,7 @@ def test_a_wall_holds_its_force_after_a_phase_until_a_force(tmp_path):
             "until": {"wall": "lid", "force": "0.1 N", "after": "0 s"},
             "move": [hold],
         },
-        {"name": "hold", "duration": "0.15 s", "move": [hold]},
+        {"name": "hold", "duration": "0.4 s", "move": [hold]},
     ]
     data = parts(wall=[BOX, lid], fill=[bed], phase=phases) | {"contact": {"friction": 0.5}}
     data["output"] = {"rows": 400, "particles": 2, "loads": True}

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,6 +18,7 @@ from hypothesis import strategies as st
 from epdem import api
 from epdem.report import chart, page
 from epdem.studies.pages import impacts_figures as of_page
+from epdem.studies.sweep.run import SweepOutcome
 
 pytestmark = pytest.mark.figures
 
@@ -247,3 +249,13 @@ def test_the_headline_names_the_warnings(passed, warnings, words):
     found = page.render(page.Page("title", ["said"], [], passed=passed, warnings=warnings))
     assert words in found and found.index("verdict") < found.index("said")
     assert all(f"</strong> {warning}</p>" in found for warning in warnings)
+
+
+def test_a_sweep_gives_the_warnings_of_its_points():
+    texts = ["", "a/R* reaches 0.75; x | other", "a/R* reaches 0.8; x", None]
+    table = pd.DataFrame({"point": [1, 2, 3, 4], "warnings": texts})
+    sweep = SimpleNamespace(points=[{}] * 4)
+    assert SweepOutcome(sweep, Path(), table, 4).warnings == [
+        "2 of 4 points, here point 2: a/R* reaches 0.75; x",
+        "1 of 4 points, here point 2: other",
+    ]

@@ -93,19 +93,43 @@ def test_the_page_shows_the_measures_of_the_case_first_and_every_number_that_cha
     page = write_sweep_page(found).read_text()
     drawn = _by_key(found, found.table.attrs["units"])
     assert re.findall(r'data-chart="([^"]+)"', page) == [chart.name for chart in drawn]
-    assert [chart.panels[0].x.label for chart in drawn] == ["scene.count", "materials.glass.density"]
-    keys = [*found.sweep.points[0], "point"]
-    numbers = found.table.drop(columns=keys).select_dtypes("number")
+    assert [chart.panels[0].x.label for chart in drawn] == ["count", "density"]
+    numbers = found.table.filter(regex="^(held|top|floor_load|spheres_in_room)(_|$)")  # measures and checks
     changing = {name for name in numbers if numbers[name].nunique() > 1}
-    for chart in drawn:
+    for key, chart in zip(("scene.count", "materials.glass.density"), drawn, strict=True):
         assert {panel.y.label for panel in chart.panels[:2]} == {"held", "top"} and chart.panels[0].y.unit == "kg"
         named = {
-            panel.y.label + ("" if series.name == "check" else f"_{series.name}"): series.y
+            panel.y.label + ("" if series.name == "check" else f"_{series.name}"): series
             for panel in chart.panels
             for series in panel.series
         }
-        assert set(named) == changing and len(changing) > 8
-        assert all(list(named[name]) == found.table[name].tolist() for name in named)
+        assert set(named) == changing and len(changing) > 6
+        for name, series in named.items():
+            points = zip(series.x, series.y, strict=True)
+            assert sorted(points) == sorted(zip(found.table[key], found.table[name], strict=True))
+
+
+def test_a_key_with_one_value_a_point_has_lines_from_low_to_high(bed, tmp_path):
+    bed.write_text(BED.replace("0.3 s", "0.02 s") + MEASURES)
+    found = run.run(run.plan(bed, {"scene.count": "20,5,10"}), tmp_path / "out")
+    (chart,) = _by_key(found, {})
+    series = [series for panel in chart.panels for series in panel.series]
+    assert series and all(list(x.x) == [5, 10, 20] and x.dash == "solid" for x in series)
+
+
+def test_the_warnings_of_the_points_stand_in_terminal_table_and_page(bed, tmp_path):
+    """A step above the stable one of a contact, at both points."""
+    bed.write_text(BED.replace("0.3 s", "0.02 s") + '[numerics]\ntime_step = "0.5 ms"\n')
+    out = tmp_path / "out"
+    command = [EPDEM, "sweep", str(bed), "--set", "scene.count=5,10", "-o", str(out)]
+    said = subprocess.run(command, capture_output=True, text=True).stdout
+    expected = r"2 of 2 points, here point 1: numerics\.time_step = 0\.0005 s: .* is stable up to"
+    assert re.search(f"warning: {expected}", said)
+    (warning,) = json.loads(subprocess.run([*command, "--json"], capture_output=True).stdout)["warnings"]
+    assert re.match(expected, warning)
+    assert table.read_sweep(out)["warnings"].str.startswith("numerics.time_step").all()
+    page = (out / "report.html").read_text()
+    assert "with a warning" in page and "2 of 2 points, here point 1: numerics.time_step" in page
 
 
 def test_a_program_reads_in_its_log_how_far_a_scene_is(bed, tmp_path, caplog):

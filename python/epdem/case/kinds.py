@@ -153,8 +153,8 @@ Kinds = Settle | Hopper | Drum | Compaction | Peening | Parts
 KINDS: tuple[str, ...] = tuple(get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(Kinds))
 
 
-class DrawnFill(Fill):
-    """A fill whose spheres are drawn at random from all sizes at once; `key`: the key of its count in the case."""
+class KindFill(Fill):
+    """A fill of a kind of scene; `key`: the key of its count in the case."""
 
     key: str
 
@@ -196,13 +196,13 @@ def _largest(particles: list[Particles]) -> float:
     return max(p.radii()[1] for p in particles)
 
 
-def _fill(particles: list[Particles], count: int, region: Room | Upright, **more: Any) -> DrawnFill:
+def _fill(particles: list[Particles], count: int, region: Room | Upright, **more: Any) -> KindFill:
     values = {"name": "spheres", "key": "scene.count", **more}
-    return DrawnFill.model_construct(particles=particles, count=count, region=region, **values)
+    return KindFill.model_construct(particles=particles, count=count, region=region, **values)
 
 
 def _preset(
-    s: Any, room: Room, wall: Sequence[AnyWall], fill: list[DrawnFill], phase: list[Phase], **more: Any
+    s: Any, room: Room, wall: Sequence[AnyWall], fill: list[KindFill], phase: list[Phase], **more: Any
 ) -> Preset:
     values = {"kind": "parts", "gravity": s.gravity, "measure": s.measure, **more}
     return Preset.model_construct(room=room, wall=list(wall), fill=fill, phase=phase, **values)

@@ -156,12 +156,14 @@ def _show_outcome(result: "SweepOutcome", as_json: bool, screen: "Console") -> N
     if as_json:
         failures = failed[["point", "folder", "reason"]].to_dict("records")
         about = {"case": result.sweep.name, "passed": result.passed, "folder": str(result.folder), "ran": result.ran}
-        print(json.dumps(about | counts | {"failures": failures}, indent=1))
+        print(json.dumps(about | counts | {"failures": failures, "warnings": result.warnings}, indent=1))
         return
     for row in failed.head(SHOWN).to_dict("records"):
         screen.print(f"point {row['point']} failed: {row['reason']}", style="red", soft_wrap=True)
     if len(failed) > SHOWN:
         screen.print(f"... and {len(failed) - SHOWN} more", style="red")
+    for warning in result.warnings:
+        screen.print(f"warning: {warning}", style="yellow", soft_wrap=True)
     outside = result.table[(result.table["status"] == DONE) & ~result.table["passed"]]["point"].nunique()
     text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
     text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""

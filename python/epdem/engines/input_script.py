@@ -122,15 +122,22 @@ def row_words(p: ScenePlan) -> Iterator[str]:
 def phases(p: ScenePlan) -> Iterator[tuple[Phase | None, Deck, Phase | None]]:
     """Each phase between its neighbours, with what every deck states of it.
 
-    steps: of the phase. time_step: None where one step serves all phases. added, removed: walls that come with the
-    phase, and that go at its end.
+    steps: of the phase. own_time_step: None if the phase before has the same. added, removed: walls that come with the
+    phase, and that go at its end. upto: whether the step at its end is known before the run. end_frames: kinds of
+    frames that its end needs beside those every so many steps. goes_on: whether frames follow.
     """
-    own_steps = any(phase.case.time_step for phase in p.phases)
+    upto = True
     for before, phase, after in zip((None, *p.phases[:-1]), p.phases, (*p.phases[1:], None), strict=True):
+        upto = upto and phase.case.condition is None
         stated = Deck(
             phase,
+            upto=upto,
+            end_frames=[
+                name for name, every in p.intervals.items() if phase.case.record and (not upto or phase.end % every)
+            ],
+            goes_on=bool(after and after.case.record),
             steps=phase.end - (before.end if before else 0),
-            time_step=phase.case.time_step or p.time_step if own_steps else None,
+            own_time_step=phase.time_step if phase.time_step != (before or phase).time_step else None,
             record=phase.case.record,
             added=[name for name in phase.gates if before is None or name not in before.gates],
             removed=[name for name in phase.gates if after and name not in after.gates],
@@ -140,8 +147,7 @@ def phases(p: ScenePlan) -> Iterator[tuple[Phase | None, Deck, Phase | None]]:
 
 def first_look(p: ScenePlan, phase: Deck) -> int:
     """The steps of a phase before its condition is looked at."""
-    step = phase.case.time_step or p.time_step
-    return int(min(phase.steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every))))
+    return int(min(phase.steps, p.every * max(1, math.ceil(phase.case.condition_from / phase.time_step / p.every))))
 
 
 def stop_condition(p: ScenePlan, phase: Deck, place: Callable[[PressedBed], str]) -> StopCondition | None:

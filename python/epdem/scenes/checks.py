@@ -196,7 +196,8 @@ def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
 def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Work [J] that the plate (put in, got back): its force, a mean over each interval, times the displacement."""
     speed = plate_velocity(p, rows)
-    work = rows["plate_force"].to_numpy() * np.abs(speed) * np.diff(rows["step"], prepend=0) * p.time_step
+    seconds = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
+    work = rows["plate_force"].to_numpy() * np.abs(speed) * seconds
     return float(work[speed < 0].sum()), float(work[speed > 0].sum())
 
 
@@ -228,7 +229,7 @@ def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float,
     diameter = 2 * float(bed["radius"].mean())
     if count.size < 2:
         return Discharge(np.nan, float(bulk), diameter, 0)
-    rate = np.polyfit(steps[during] * p.time_step, out[during], 1)[0]
+    rate = np.polyfit(p.time_at(steps[during]), out[during], 1)[0]
     return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]))
 
 

@@ -162,8 +162,8 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
     strains = [name for name in STRAINS if name in table]
     table[strains] = table[strains].clip(lower=0.0).cummax()  # no sphere is there yet, or the one that held it left
     if isinstance(p.case.scene, Compaction):
-        middle = (table["step"] - 0.5 * p.every).clip(lower=0) * p.time_step
-        table["plate_z"] = plate_height(p, middle.to_numpy())
+        middle = p.time_at((table["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
+        table["plate_z"] = plate_height(p, middle)
         table["stress"] = table["plate_force"] / (p.case.scene.box[0] * p.case.scene.box[1])
     return table.reset_index(drop=True)
 
@@ -172,8 +172,7 @@ def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
     """Height [m] of the plate at times [s], each the middle of the interval that a force is the mean of."""
     height = np.full(len(time), p.triangles["plate"][0, 0, 2])
     begin = 0.0
-    for phase in p.phases:
-        end = phase.end * p.time_step
+    for phase, end in zip(p.phases, p.time_at(np.array([phase.end for phase in p.phases])), strict=True):
         height += phase.plate * (np.clip(time, begin, end if phase is not p.phases[-1] else None) - begin)
         begin = end
     return height

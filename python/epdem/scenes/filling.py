@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..case.kinds import DrawnFill
+from ..case.kinds import KindFill
 from ..case.parts import Fill, Parts, Region
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
@@ -151,6 +151,11 @@ def _insertion(case: SceneCase, scene: Parts, f: Fill, key: str, count: int) -> 
     return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period)
 
 
+def _key(f: Fill) -> str:
+    """The place of a fill in the case."""
+    return f.key if isinstance(f, KindFill) else f"scene.fill.{f.name}"
+
+
 def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     """The insertions of a scene's fills: one for each size of a fill at once, the largest first; one of a stream.
 
@@ -158,15 +163,12 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     """
     found: list[Insertion] = []
     for f in scene.random_fills:
-        if isinstance(f, DrawnFill):
-            found.append(_insertion(case, scene, f, f.key, f.count or 0))
-            continue
-        key = f"scene.fill.{f.name}"
+        key = _key(f)
         sizes = sorted((size for size in counted(case, f) if size.placed), key=lambda size: -size.radius)
         if not sizes:
             raise CaseError(f"{key}: not one sphere; give more, or smaller ones")
         all_sizes = _insertion(case, scene, f, key, sum(size.placed or 0 for size in sizes))
-        if f.rate is not None:
+        if f.rate is not None or (isinstance(f, KindFill) and len(sizes) == 1):
             found.append(all_sizes)
             continue
         found += [
@@ -179,14 +181,14 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
 def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size], float]]:
     """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
     that the mass is the mass of the placed spheres."""
-    of_case = {f"scene.fill.{f.name}": f for f in case.scene.random_fills} if isinstance(case.scene, Parts) else {}
+    of_case = {_key(f): f for f in case.parts.random_fills}
     for key, group in groupby(fills, key=lambda fill: fill.key):
         first = next(group)
         if first.exact:
             f = of_case[key]
             sizes = counted(case, f)
             mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
-            yield f"{key}.particles", sizes, mass
+            yield PARTICLES.get(key, f"{key}.particles"), sizes, mass
         else:
             yield PARTICLES.get(key, f"{key}.particles"), _random(case, first), 0.0
 

@@ -33,12 +33,16 @@ from .walls import FloatArray
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
+ROUNDING = 1e-9  # of a number of steps
+MISSED = 1e-4  # of the duration of a phase with a given time step, which ends with a row
+MORE_ROWS = 10  # times the requested number, so that these phases end with a row
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 
 @dataclass(frozen=True)
 class Phase:
-    """A phase of the case. end: its last step, or an earlier one if its condition is met.
+    """A phase of the case. end: its last step, or an earlier one if its condition is met. time_step [s]: the given one,
+    or one with which the duration is a whole number of rows.
 
     gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
     or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
@@ -46,6 +50,7 @@ class Phase:
 
     case: case_walls.Phase
     end: int
+    time_step: float
     gates: tuple[str, ...] = ()
     reached: str = ""
 
@@ -71,7 +76,7 @@ class ScenePlan:
     triangles: of each wall that is not a plane, at the start, shape (n, 3 corners, 3 coordinates) [m]. loads: walls
     whose force, and if they are meshes torque, is in the rows. beds: that plates press.
     every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
-    vtk, pictures, restarts: steps between two of them, 0: none.
+    vtk, pictures, restarts: steps between two of them, 0: none; all but restarts also at the end of a recorded phase.
     """
 
     case: SceneCase
@@ -80,7 +85,6 @@ class ScenePlan:
     insertions: tuple[Insertion, ...]
     loads: tuple[str, ...]
     beds: tuple[PressedBed, ...]
-    time_step: float
     phases: tuple[Phase, ...]
     every: int
     sampling: int
@@ -103,6 +107,17 @@ class ScenePlan:
     @property
     def steps(self) -> int:
         return self.phases[-1].end
+
+    @property
+    def time_step(self) -> float:
+        """The time step [s] of the first phase that gives none of its own, else of the first phase."""
+        return next((x.time_step for x in self.phases if x.case.time_step is None), self.phases[0].time_step)
+
+    @property
+    def intervals(self) -> dict[str, int]:
+        """Steps between two frames of each kind that the run writes."""
+        every = {"particles": self.frames, "contacts": self.contacts, "vtk": self.vtk, "pictures": self.pictures}
+        return {name: steps for name, steps in every.items() if steps}
 
     @property
     def ends_early(self) -> bool:
@@ -132,10 +147,10 @@ class ScenePlan:
         return replace(self, phases=tuple(phases))
 
     def frame_steps(self, every: int) -> list[int]:
-        """The steps of frames written every `every` steps, in recorded phases only."""
+        """The steps of frames written every `every` steps and at the end of a phase, in recorded phases only."""
         begins = [0, *(phase.end for phase in self.phases)]
         recorded = [(begin, phase.end) for begin, phase in zip(begins, self.phases, strict=False) if phase.case.record]
-        steps = [*range(0, self.steps + 1, every), *([self.steps] if self.solid else [])]
+        steps = [*range(0, self.steps + 1, every), *(end for _, end in recorded)]
         return sorted({n for n in steps if any(low <= n <= high for low, high in recorded)})
 
     @property
@@ -149,10 +164,10 @@ class ScenePlan:
 
     def time_at(self, steps: np.ndarray) -> np.ndarray:
         """Times [s] of steps."""
-        if not any(phase.case.time_step for phase in self.phases):
+        if len(self.phases) == 1:
             return np.asarray(steps * self.time_step)
         ends = np.array([0, *(phase.end for phase in self.phases)])
-        lengths = np.diff(ends) * [phase.case.time_step or self.time_step for phase in self.phases]
+        lengths = np.diff(ends) * [phase.time_step for phase in self.phases]
         return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
 
     def motions_until(self, step: int) -> list[tuple[dict[str, Move], float]]:
@@ -234,25 +249,45 @@ class ScenePlan:
         return f"{s.kind}: {self.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
 
 
-def _intervals(output: Output, steps: float) -> tuple[int, int]:
-    """(rows, steps per row): enough rows that the last one is also a frame of particles."""
+def _rows(output: Output) -> int:
+    """Enough rows that the last one is also a frame of particles."""
     frames = max(output.particles, 1)
-    rows = frames * math.ceil(output.rows / frames)
-    every = max(1, math.ceil(steps / rows))
-    tens = 10 ** max(0, len(str(every)) - 2)  # round numbers: samples divide a row, and a person reads them
-    return rows, tens * math.ceil(every / tens)
+    return frames * math.ceil(output.rows / frames)
 
 
-def _phases(scene: Parts, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
+def _row(rows: int, steps: float, given: list[float]) -> int:
+    """Steps per row. given: steps in the duration of each phase with a given time step.
+
+    Each of these phases ends within MISSED of its duration, if at most MORE_ROWS times the requested rows do so.
+    """
+    least = max(1, math.ceil(steps / rows))
+    tens = 10 ** max(0, len(str(least)) - 2)  # round numbers: samples divide a row, and a person reads them
+    every = int(tens * math.ceil(least / tens))
+    if not given:
+        return every
+    sample = max(1, every // (20 * SAMPLES))
+    found = np.array([every, *range(every // sample * sample, max(1, every // MORE_ROWS) - 1, -sample)])
+    wanted = np.array(given)[:, None]
+    missed = (np.abs(np.maximum(np.rint(wanted / found), 1.0) * found / wanted - 1.0)).max(axis=0)
+    return int(found[np.argmax(missed <= max(MISSED, missed.min()))])
+
+
+def _phases(scene: Parts, rows: int, every: int, dt: float, given: float | None) -> tuple[Phase, ...]:
+    """The phases, each of which ends with a row: at the row next to its duration with a given time step, else exactly
+    at its duration, with a step of at most dt."""
     phases, end = [], 0
     for phase in scene.phase:
-        end += every * max(1, round(phase.seconds / (phase.time_step or dt) / every))
+        step = phase.time_step or given
+        if step:
+            own = max(1, round(phase.seconds / step / every))
+        else:
+            own = rows if len(scene.phase) == 1 else math.ceil(phase.seconds / dt / every * (1.0 - ROUNDING))
+            step = phase.seconds / (every * own)
+        end += every * own
         gates = tuple(w.name for w in scene.gates if phase.name in w.phases)
         reached = "" if phase.travels is None else REACHED if phase.travels else NOT_REACHED
-        phases.append(Phase(phase, end, gates, reached))
-    last = phases.pop()
-    end = max(rows * every, last.end) if phases else rows * every
-    return (*phases, replace(last, end=end))
+        phases.append(Phase(phase, end, step, gates, reached))
+    return tuple(phases)
 
 
 def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
@@ -286,13 +321,16 @@ def plan(case: SceneCase) -> ScenePlan:
     steps = duration / dt
     if any(phase.time_step for phase in scene.phase):
         steps = sum(phase.seconds / (phase.time_step or dt) for phase in scene.phase)
-    rows, every = _intervals(out, steps)
-    given = case.numerics.time_step or any(phase.time_step for phase in scene.phase)
-    if not given and not isinstance(scene, Preset) and scene.phase[-1].move:
-        dt = duration / (rows * every)  # a little smaller, so that no motion lasts longer than requested
+    given = case.numerics.time_step
+    fixed = [phase.seconds / step for phase in scene.phase if (step := phase.time_step or given)]
+    rows = _rows(out)
     refuse_steps(case, rows, duration, duration / steps)
+    every = _row(rows, steps, fixed)
 
-    def interval(count: int) -> int:
+    phases = _phases(scene, rows, every, dt, given)
+    whole = phases[-1].end // every
+
+    def interval(count: int, rows: int = max(rows, whole)) -> int:
         return 0 if count == 0 else every * max(1, rows // count)
 
     return ScenePlan(
@@ -302,13 +340,12 @@ def plan(case: SceneCase) -> ScenePlan:
         insertions=filled,
         loads=_loads(case, scene),
         beds=beds,
-        time_step=dt,
-        phases=_phases(scene, rows, every, dt),
+        phases=phases,
         every=every,
         sampling=next(d for d in range(max(1, every // SAMPLES), 0, -1) if every % d == 0),
         frames=interval(out.particles),
         contacts=interval(out.contacts or (out.particles if out.energy else 0)),
         vtk=interval(out.vtk),
         pictures=interval(out.pictures),
-        restarts=interval(out.restarts),
+        restarts=interval(out.restarts, whole),
     )

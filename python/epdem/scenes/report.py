@@ -4,6 +4,7 @@
 import json
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,8 @@ from rich.console import Console
 from ..base.files import claim
 from ..base.terminal import make_table, show_table, table
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
-from ..case.parts import MEASURES, Histogram, Load
+from ..case.parts import MEASURES, Histogram, Load, Parts
+from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from ..report.page import Picture
@@ -55,11 +57,25 @@ def _against_time(
     """A chart of curves against time; constant ones are numbers in its text. None without a curve that changes."""
     if not panels:
         return []
+    panels = [_with_phases(p, panel) for panel in panels]
     alt = f"Against time: {', '.join(panel.y.label for panel in panels)}."
     if constant:
         alt += f" Constant: {', '.join(f'{label} = {value:.5g}' for label, value in constant.items())}."
+    if len(p.phases) > 1:
+        alt += f" Dotted lines: ends of the phases {', '.join(phase.name for phase in p.phases[:-1])}."
     columns = min(COLUMNS, len(panels))
     return [Chart(name, p.case.case.title, alt, panels, columns=columns, heading=heading)]
+
+
+def _with_phases(p: ScenePlan, panel: Panel) -> Panel:
+    """A panel against time with a dotted line at the end of each phase but the last."""
+    values = np.concatenate([np.asarray(series.y, float) for series in panel.series])
+    values = values[np.isfinite(values) & ((values > 0) | (not panel.y.log))]
+    if not values.size:
+        return panel
+    ends = p.phase_table["end_time"][:-1]
+    lines = [Series("", [end, end], [values.min(), values.max()], GREY, "dot") for end in ends]
+    return replace(panel, series=[*panel.series, *lines])
 
 
 def rows(outcome: SceneOutcome) -> list[Chart]:
@@ -116,7 +132,7 @@ def energy_balance(outcome: SceneOutcome) -> Chart:
     alt = "Terms of the energy balance against time; gravity is above its lowest value, work is done by the walls."
     if "friction" in table and "springs" not in table:
         alt += " Friction is the remainder of the balance."
-    panels = [Panel(TIME, Axis("energy", "J"), series)]
+    panels = [_with_phases(outcome.plan, Panel(TIME, Axis("energy", "J"), series))]
     return Chart("energy", f"{outcome.case.case.title}: energy", alt, panels, heading="Energy balance against time")
 
 
@@ -192,20 +208,48 @@ def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
     ]
 
 
+def _parts(p: ScenePlan, s: Parts, tables: Tables) -> list[Panel]:
+    """Force over displacement of each wall that moves only with constant velocities and whose force is in the rows:
+    a curve for each of its phases, both along the first of its motions."""
+    rows, phases = tables["rows"], p.phase_table
+    step = rows["step"].to_numpy()
+    middle = p.time_at(step - 0.5 * p.every)
+    found = []
+    for name in p.loads:
+        moves = [phase.moves.get(name) for phase in p.phases]
+        linear = [np.array(move.velocity) if isinstance(move, LinearMove) else np.zeros(3) for move in moves]
+        moving = [velocity for velocity in linear if velocity.any()]
+        if not moving or any(move and not isinstance(move, LinearMove) for move in moves):
+            continue
+        along = moving[0] / np.linalg.norm(moving[0])
+        force = -rows[[f"{name}_force_{axis}" for axis in "xyz"]].to_numpy() @ along
+        way = np.zeros(len(rows))
+        series: list[Series] = []
+        for velocity, phase in zip(linear, phases.to_dict("records"), strict=True):
+            way += along @ velocity * (np.clip(middle, phase["begin_time"], phase["end_time"]) - phase["begin_time"])
+        for velocity, phase in zip(linear, phases.to_dict("records"), strict=True):
+            during = (step > phase["begin"]) & (step <= phase["end"])
+            if velocity.any():
+                series.append(Series(phase["phase"], way[during], force[during], len(series) % len(PALETTE)))
+        found.append(Panel(Axis(f"displacement of {name}", "m"), Axis(f"force on {name}", "N"), series))
+    return found
+
+
 PANELS: dict[type, Callable[..., list[Panel]]] = {
     Hopper: _hopper,
     Compaction: _compaction,
     Drum: _drum,
     Peening: _peening,
     Settle: _settle,
+    Parts: _parts,
 }
 
 
 def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """The panels of the key figure; none of a scene of parts, and none where the tables lack the data."""
+    """The panels of the key figure; none where the tables lack the data."""
     s = p.case.scene
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
-    drawn = frames or isinstance(s, Compaction) or "torque" in tables["rows"]
+    drawn = frames or isinstance(s, Compaction | Parts) or "torque" in tables["rows"]
     return PANELS[type(s)](p, s, tables) if drawn and type(s) in PANELS else []
 
 

@@ -22,7 +22,6 @@ from .walls import FloatArray, sheet
 SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
 ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = true"
-MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
 NO_FINITE_STRAIN = 1e6  # the parameter of cavity without finite_strain
 PRESSURES = {  # of lattices, docs/choose.md: E/Y of 30 and 120, relative density up to 0.95
@@ -31,13 +30,14 @@ PRESSURES = {  # of lattices, docs/choose.md: E/Y of 30 and 120, relative densit
     "cavity": "0.80 to 1.23",
     "cavity, finite_strain": "0.55 to 0.98",
 }
+MISSED = 0.01  # of the duration of a phase
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
     found = _law(p) + filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
-    return found + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+    return found + _time_steps(p) + _durations(p) + _overlaps(p) + _walls(p)
 
 
 def _law(p: ScenePlan) -> list[str]:
@@ -111,16 +111,16 @@ def _time_steps(p: ScenePlan) -> list[str]:
     ]
 
 
-def _phases(p: ScenePlan) -> list[str]:
-    """Phases that are longer or shorter than requested, because a phase ends with a row."""
+def _durations(p: ScenePlan) -> list[str]:
+    """Phases that are longer or shorter than requested, because their time step is given and they end with a row."""
     found = []
-    for times, phase in zip(p.phase_table.to_dict("records"), p.scene.phase, strict=True):
-        seconds = times["end_time"] - times["begin_time"]
-        if not isinstance(p.scene, Preset) and abs(seconds / phase.seconds - 1.0) > (MOVED if phase.move else LONGER):
-            row = p.every * (phase.time_step or p.time_step)
+    for times, phase in zip(p.phase_table.to_dict("records"), p.phases, strict=True):
+        seconds, wanted = times["end_time"] - times["begin_time"], phase.case.seconds
+        if abs(seconds / wanted - 1.0) > MISSED:
+            row = p.every * phase.time_step
             found.append(
-                f"scene.phase.{phase.name} takes {seconds:.4g} s, not {phase.seconds:.4g} s: a phase ends with a row "
-                f"(each {row:.2g} s) and the last one with a frame; give more output.rows"
+                f"phase {phase.name} takes {seconds:.4g} s, not {wanted:.4g} s: its time_step is given, and it ends "
+                f"with a row (each {row:.2g} s); give more output.rows, or leave time_step out"
             )
     return found
 

@@ -28,6 +28,7 @@ from ..impacts.run import Outcome
 from ..laws.strengths import find_law
 from ..report.chart import INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
+from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
 from ..scenes.plan import ScenePlan
 from ..scenes.report import bed
@@ -330,7 +331,8 @@ def write_sweep_page(result: SweepOutcome) -> Path:
     rows = table.drop(columns=["folder", "reason"])
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
     parts += [case_lines(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
-    page = Page(f"Sweep of {sweep.name}", [said], parts, passed=result.passed, command=command())
+    title = f"Sweep of {sweep.name}"
+    page = Page(title, [said], parts, passed=result.passed, command=command(), warnings=result.warnings)
     return write_study_page(page, result.folder)
 
 
@@ -354,18 +356,22 @@ def _by_speed(result: SweepOutcome) -> Chart:
 
 
 def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
-    """For each key with several values, the numbers of the scenes that change, measures of the case first."""
+    """For each key with several values, the numbers of the scenes that change: the measures of the case and the checks,
+    of a case without measures all columns."""
     table = result.table[result.table["status"] == DONE]
     keys = [name for name in result.sweep.points[0] if name in table]
     numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1] or ["point"]
     changing = _changing(table.drop(columns=["point", *keys]))
     measured = [m["name"] for m in result.sweep.tables.get("scene", {}).get("measure", [])]
-    columns = sorted(changing, key=lambda column: column not in measured)  # stable: else as in the table
-    shown, left = columns[:MOST_PANELS], columns[MOST_PANELS:]
+    wanted = [column for column in changing if not measured or column in measured or column in CHECKS]
+    columns = sorted(wanted or changing, key=lambda column: column not in measured)  # stable: else as in the table
+    shown = columns[:MOST_PANELS]
+    left = [column for column in changing if column not in shown]
     charts = []
     for key in numeric:
-        x = Axis(key, units.get(key, ""))
-        panels = [Panel(x, _axis(y, changing[y], units), _series(table, key, y, changing[y])) for y in shown]
+        x = Axis(key.rpartition(".")[2], units.get(key, ""))
+        lines = table[key].is_unique
+        panels = [Panel(x, _axis(y, changing[y], units), _series(table, key, y, changing[y], lines)) for y in shown]
         alt = f"Against {key}: {', '.join(shown)}." + (f" {len(left)} columns are in the table alone." if left else "")
         name = "sweep" if key == numeric[0] else f"sweep_{key}"
         if panels:
@@ -388,12 +394,14 @@ def _axis(column: str, kinds: list[str], units: dict[str, str]) -> Axis:
     return Axis(column, units.get("_".join(filter(None, (column, kinds[0]))), ""))
 
 
-def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str]) -> list[Series]:
+def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines: bool) -> list[Series]:
+    """The numbers of a column over a key; lines: whether a line joins the points, of one value for each key."""
+    table = table.sort_values(key)
     x, series = table[key].to_numpy(float), []
     for kind in kinds:
         k = KINDS.index(kind) if kind else 0
         y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
-        series.append(Series(kind or "check", x, y, k, None, k))
+        series.append(Series(kind or "check", x, y, k, "solid" if lines else None, k))
     return series
 
 

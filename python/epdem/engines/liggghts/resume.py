@@ -100,7 +100,7 @@ def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
     The newest restart file from which the damaged frames are written again; if there is none, the newest. Raises
     CaseError if there is none at all.
     """
-    steps = whole_restarts(folder)
+    steps = [step for step in whole_restarts(folder) if step < p.steps]  # at the end nothing is left to run
     if not steps:
         raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
     lost = tables.damaged(p, folder, steps[-1])

@@ -77,7 +77,7 @@ def insertions(p: ScenePlan) -> tuple[Deck, ...]:
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
     result: list[Deck] = []
     first = 1
-    steps = {phase.name: phase.case.time_step or p.time_step for phase in p.phases}
+    steps = {phase.name: phase.time_step for phase in p.phases}
     for i, fill in enumerate(p.insertions, 1):
         templates = _templates(p, fill, first, seeds)
         first += len(templates)
@@ -199,19 +199,16 @@ def _phase_particle(p: ScenePlan, b: Body) -> decks.Deck:
 def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
     """The phases: commands at the start and the end of each, and commands of a run that continues in it.
 
-    gates: planes that come with the phase. upto: whether the step at its end is known before the run. particles:
-    spheres that come with it. vibrations: walls whose power needs the step at which their vibration begins.
+    gates: planes that come with the phase. particles: spheres that come with it. vibrations: (wall, formula of the
+    angle at the begin of the phase) of each vibration whose power is counted.
     """
     gates = {w.name: plane(p, w) for w in p.scene.gates}
     found: list[decks.Deck] = []
-    upto, with_power = True, "wall_power" in p.row_columns
+    with_power = "wall_power" in p.row_columns
     for before, phase, after in phases(p):
         motions = {name: _motion(p, name, move) for name, move in phase.moves.items()}
         new = [name for name, move in phase.moves.items() if before is None or before.moves.get(name) != move]
-        _refuse_other_step(p, before, phase)
-        upto = upto and phase.case.condition is None
         part = phase.but(
-            upto=upto,
             start_commands=[motions[name][0] for name in new],
             gates=[gates[name] for name in phase.added],
             resume_gates=[gates[name] for name in phase.gates],
@@ -222,23 +219,22 @@ def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
             ],
             particles=[_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name],
             power=power(p, phase) if with_power else "",
-            vibrations=[name for name in new if with_power and isinstance(phase.moves[name], VibrateMove)],
+            vibrations=_angles(before, phase, new) if with_power else [],
             stop=stop_condition(p, phase, partial(_place, p)),
         )
         found.append(part)
     return tuple(found)
 
 
-def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: decks.Deck) -> None:
-    """Raise CaseError for a vibration that goes on with another time step: its power is counted in steps."""
-    if before is None or "wall_power" not in p.row_columns or before.case.time_step == phase.case.time_step:
-        return
+def _angles(before: Phase | None, phase: decks.Deck, new: list[str]) -> list[tuple[str, str]]:
+    """(wall, formula of the angle [rad] at the begin of a phase) of each wall that vibrates in it."""
+    found = []
     for name, move in phase.moves.items():
-        if isinstance(move, VibrateMove) and before.moves.get(name) == move:
-            raise CaseError(
-                f"scene.phase.{phase.name}.time_step: wall {name} vibrates on from the phase before, and its work is "
-                "known with one step of time only; give both phases the same one, or remove output.energy"
-            )
+        if isinstance(move, VibrateMove):
+            rate = decks.number(move.omega * before.time_step) if before else ""
+            so_far = f"${{angle_{name}}}+(${{now}}-${{begin_{name}}})*{rate}"
+            found.append((name, "0.0" if name in new else so_far))
+    return found
 
 
 def _goes_on(name: str, phase: decks.Deck, after: Phase) -> bool:
@@ -283,9 +279,9 @@ def power(p: ScenePlan, phase: decks.Deck) -> str:
         if isinstance(move, PressMove):
             terms.append(_of_servo(id, move))
         if isinstance(move, VibrateMove):
-            omega = decks.number(move.omega * (phase.case.time_step or p.time_step))
+            omega = decks.number(move.omega * phase.time_step)
             force_times_speed = "+".join(_times(id, 1, [move.omega * a for a in move.amplitude]))
-            terms.append(f"({force_times_speed})*cos((step-${{begin_{name}}})*{omega})")
+            terms.append(f"({force_times_speed})*cos(${{angle_{name}}}+(step-${{begin_{name}}})*{omega})")
     return f"-({'+'.join(terms)})" if terms else "0.0"
 
 

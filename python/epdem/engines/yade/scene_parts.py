@@ -111,7 +111,7 @@ def fills(p: ScenePlan, phase: decks.Deck) -> list[decks.Deck]:
 
     batch: of the spheres that come every `every` steps; 0: all come at the begin. file: their sizes.
     """
-    step, found = phase.case.time_step or p.time_step, []
+    step, found = phase.time_step, []
     for n, f in _late(p):
         if f.phase == phase.name:
             every = max(1, math.ceil(f.period / step)) if f.rate else 1

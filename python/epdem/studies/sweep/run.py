@@ -3,6 +3,7 @@
 
 import contextlib
 import errno
+import re
 import shutil
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,6 +18,7 @@ from ...base.files import claim
 from ...case import impact, scene
 from ...case.scene import is_scene
 from ...case.toml import located, named, text_for_anywhere
+from ...case.warnings import case_warnings
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.comparison import compare
@@ -35,6 +37,7 @@ from .folder import Sweep
 from .points import Point, Value, keys_of
 from .table import numbers_of
 
+SEPARATOR = " | "  # of the warnings of a row
 FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full disk
 
 
@@ -103,7 +106,9 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
             stage = run_plan(p, tool, at, ranks=sweep.ranks, version=version, stored=stored.get(key))
             if has_deck:  # others run faster than a table is read
                 kept[key] = stage
-            tables.append(compare(tool.name, x.law.name, stage.tables["impacts"], prediction, x.check))
+            rows = compare(tool.name, x.law.name, stage.tables["impacts"], prediction, x.check)
+            said = [*case_warnings(case), *prediction.warnings, *tool.check(p)]
+            tables.append(rows.assign(warnings=SEPARATOR.join(said)))
     if kept:
         store.write_stages(place, kept)
     table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
@@ -117,6 +122,7 @@ def _scene(sweep: Sweep, place: Path) -> dict[str, list[Any]]:
     def once(go_on: bool) -> dict[str, list[Any]]:
         outcome = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
         row = {"engine": tool.name, **numbers_of(outcome.results), "passed": outcome.passed}
+        row["warnings"] = SEPARATOR.join(outcome.warnings)
         return {name: [value] for name, value in row.items()}
 
     interrupted = any(place.glob("restart.*.bin")) and not (place / "results.h5").exists()
@@ -147,6 +153,18 @@ class SweepOutcome:
     def passed(self) -> bool:
         """Whether every point is finished and within its tolerances."""
         return bool((self.table["status"] == store.DONE).all() and self.table["passed"].all())
+
+    @property
+    def warnings(self) -> list[str]:
+        """Each warning of the points once, whatever its numbers, with the number of points and the first of them."""
+        found: dict[str, tuple[str, int, set[int]]] = {}
+        texts = self.table.get("warnings", pd.Series("", index=self.table.index)).fillna("")
+        for number, text in zip(self.table["point"], texts, strict=True):
+            for sentence in filter(None, str(text).split(SEPARATOR)):
+                kind = re.sub(r"[-+]?\d[\d.e+-]*", "#", sentence)
+                found.setdefault(kind, (sentence, int(number), set()))[2].add(int(number))
+        total = len(self.sweep.points)
+        return [f"{len(all_)} of {total} points, here point {first}: {said}" for said, first, all_ in found.values()]
 
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))

@@ -41,7 +41,7 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
             filled.extend(values)
         count += size
     table = pd.DataFrame({name: values + [None] * (count - len(values)) for name, values in columns.items()})
-    for name in ("engine", "law"):
+    for name in ("engine", "law", "warnings"):
         if name in table:
             table[name] = table[name].fillna("")
     if "passed" in table:

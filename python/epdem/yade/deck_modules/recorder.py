@@ -125,9 +125,11 @@ class Recorder:
         contacts.strain()  # from now on
         self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
         self.values: dict[str, float] = {}  # of the last row
-        self._begin, self._end, self._records, self._recorded = 0, 0, True, True
-        self._void: Callable[[], float] | None = None  # of this phase
-        self._solid = False  # whether the bed has lost its void
+        self._begin, self._end, self._records, self._recorded = 0, 0, False, False
+        self._until: Callable[[dict[str, float]], bool] | None = None  # of this phase
+        self._void: Callable[[], float] | None = None
+        self._looked = 0
+        self._reached, self._solid = False, False  # whether the condition holds, whether the bed has lost its void
         print("Step", *self.names)
 
     def run(
@@ -148,21 +150,19 @@ class Recorder:
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
         self._records, self._recorded = record, self._records
-        self._begin, self._end, self._void = self._end, self._end + steps, void
+        self._begin, self._end = self._end, self._end + steps
+        self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
             return
-        looked, reached = self._begin + after, False
-        while O.iter <= self._end and not reached:
+        while O.iter <= self._end and not self._reached:
             self._step(fills)
-            step = O.iter - 1
             if self._solid:
-                print(f"phase {name} left no void\nphase {name} ended at step {step}", flush=True)
+                print(f"phase {name} left no void\nphase {name} ended at step {O.iter - 1}", flush=True)
                 raise SystemExit
-            reached = until is not None and step > looked and step % self.every == 0 and until(self.values)
         self._end = O.iter - 1
-        if until and not reached:
+        if until and not self._reached:
             print(f"phase {name} was not ended by its condition")
         print(f"phase {name} ended at step {self._end}", flush=True)
 
@@ -186,11 +186,14 @@ class Recorder:
             self.spheres.remove_outside(self.low, self.high)
             self.row()
             self._solid = O.iter > self._begin and self._void is not None and self._void() <= 0.0
-        if not (self._records or (self._recorded and O.iter == self._begin)):
+            self._reached = O.iter > self._looked and self._until is not None and self._until(self.values)
+        ended = self._recorded and O.iter == self._begin  # the phase before
+        if not (self._records or ended):
             return
-        if self.frames and (self._solid or O.iter % self.frames == 0):
+        last = ended or self._solid or self._reached or O.iter == self._end
+        if self.frames and (last or O.iter % self.frames == 0):
             self.frame()
-        if self.tables and (self._solid or O.iter % self.tables == 0):
+        if self.tables and (last or O.iter % self.tables == 0):
             self.contact_table()
 
     def on_walls(self) -> Any:
