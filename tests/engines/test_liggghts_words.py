@@ -139,7 +139,7 @@ def comm(process: int) -> str:
         return ""
 
 
-DEAF = "trap '' TERM; (trap '' TERM; sleep 62) & echo $$ > pid; while true; do sleep 62; done"
+DEAF = "trap '' TERM; (trap '' TERM; sleep 62) & echo $$ > pid; while true; do sleep 0.01; done"
 
 
 def test_a_program_that_is_deaf_to_sigterm_is_ended_with_all_that_it_started(tmp_path, monkeypatch):

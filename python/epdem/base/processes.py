@@ -213,18 +213,27 @@ def end_with_parent() -> None:
 
 
 def kill(process: subprocess.Popen[bytes]) -> None:
-    """Stop a process and all that it started: mpirun gives each rank its own process group."""
-    try:
-        leader = psutil.Process(process.pid)
-        family = [*leader.children(recursive=True), leader]
-    except psutil.NoSuchProcess:
-        family = []
+    """Stop a process and its session, new members too: mpirun gives each rank its own process group."""
     for stop in (psutil.Process.terminate, psutil.Process.kill):
-        for member in family:
-            with contextlib.suppress(psutil.NoSuchProcess):
-                stop(member)
-        _, family = psutil.wait_procs(family, timeout=PATIENCE)
+        asked: set[psutil.Process] = set()
+        end = time.monotonic() + PATIENCE
+        while (members := session(process.pid)) and time.monotonic() < end:
+            for member in members - asked:
+                with contextlib.suppress(psutil.NoSuchProcess):
+                    stop(member)
+            asked |= members
+            psutil.wait_procs(members, timeout=POLL)
     process.wait()
+
+
+def session(leader: int) -> set[psutil.Process]:
+    """The living processes of the session that `leader` began."""
+    members = set()
+    for member in psutil.process_iter():
+        with contextlib.suppress(psutil.NoSuchProcess, ProcessLookupError):
+            if os.getsid(member.pid) == leader and member.status() != psutil.STATUS_ZOMBIE:
+                members.add(member)
+    return members
 
 
 def most_ranks() -> int:
