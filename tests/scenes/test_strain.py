@@ -48,6 +48,6 @@ def test_a_press_that_goes_beyond_small_strain_says_so_however_slow_it_is(tmp_pa
     assert largest > 0.3 and f" reaches {largest:.2f}, above 0.3 in up to " in said
     contacts, spheres = outcome.results.contacts, outcome.results.particles
     R_star = spheres["radius"].iloc[0] / (1.0 + (contacts["wall"] == ""))
-    digits = 1 + 1e-7  # of numbers in LIGGGHTS's rows
+    digits = 1 + 1e-4  # while a contact unloads, its spheres grow by their other contacts
     assert (0.5 * contacts["dent_radius"] / R_star).max() <= largest * digits  # one material: w = 1/2
     assert (0.5 * contacts["delta_max"] / R_star).max() <= outcome.results.rows[STRAINS[1]].iloc[-1] * digits
