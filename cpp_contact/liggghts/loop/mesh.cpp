@@ -61,7 +61,7 @@ class NearSpheres {
   }
 
  private:
-  static constexpr double reach = 1.0 + 1e-6;  // far above round-off
+  static inline const double reach = 1.0 + 1e-6;  // far above round-off
 
   struct Near {
     int triangle, count;
