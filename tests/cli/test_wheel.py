@@ -15,7 +15,7 @@ import pytest
 from epdem.engines.liggghts import header
 
 ROOT = Path(__file__).resolve().parents[2]
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.packaging
 BLOCKED = """
 import importlib, pkgutil, sys
 class Blocked:

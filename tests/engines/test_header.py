@@ -26,7 +26,7 @@ from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 
-pytestmark = pytest.mark.liggghts
+pytestmark = [pytest.mark.liggghts, pytest.mark.packaging]
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "cpp_contact" / "liggghts"

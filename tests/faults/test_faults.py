@@ -16,6 +16,7 @@ from workshop import PYTHON, ROOT, Runner, build_library, program
 SWITCHED = ("library", "plugin")  # all faults in one build
 ROOMS = [path.stem for path in sorted((Path(__file__).parent / "planted").glob("*.toml")) if path.stem not in SWITCHED]
 FAULTS, OF_LIBRARY, OF_PLUGIN = faults(*ROOMS), faults("library"), faults("plugin")
+EVERY = -(-len(FAULTS) // 10)
 HALVES = [sorted({fault.test for fault in FAULTS})[half::2] for half in (0, 1)]
 
 
@@ -33,7 +34,9 @@ def test_every_planted_fault_has_its_own_name_and_a_text_that_exists():
         planted(fault, (ROOT / fault.file).read_text())
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)
+@pytest.mark.parametrize(
+    "fault", [pytest.param(f, marks=[pytest.mark.faults] * (n % EVERY > 0), id=f.name) for n, f in enumerate(FAULTS)]
+)
 def test_a_planted_fault_turns_its_test_red(fault, copy, tests_of_copy):
     if needs_an_engine(fault.test):
         pytest.skip("the engine is not installed")
@@ -50,6 +53,7 @@ def test_a_planted_fault_turns_its_test_red(fault, copy, tests_of_copy):
     assert done.returncode == 1, f"the test did not fail:\n{done.stdout[-2000:]}"
 
 
+@pytest.mark.faults
 @pytest.mark.parametrize("tests", HALVES, ids=["first half", "second half"])
 def test_every_named_test_is_green_without_a_fault(tests, tests_of_copy):
     """In two processes, one for each core."""
@@ -69,13 +73,13 @@ def all_turn_red(tests: Runner, found: list[Fault]) -> None:
     assert reds == dict.fromkeys(reds, 1), "a test did not fail"
 
 
-@pytest.mark.slow
+@pytest.mark.faults
 def test_planted_faults_of_the_library_turn_their_tests_red(spoilt):
     build_library(spoilt, with_switches(spoilt, OF_LIBRARY))
     all_turn_red(Runner(spoilt), OF_LIBRARY)
 
 
 @pytest.mark.liggghts
-@pytest.mark.slow
+@pytest.mark.faults
 def test_planted_faults_of_the_plugin_turn_their_tests_red(plugin):
     all_turn_red(Runner(plugin, {"EPDEM_LIGGGHTS": str(program(plugin))}), OF_PLUGIN)

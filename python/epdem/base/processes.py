@@ -218,21 +218,21 @@ def kill(process: subprocess.Popen[bytes]) -> None:
         asked: set[psutil.Process] = set()
         end = time.monotonic() + PATIENCE
         while (members := session(process.pid)) and time.monotonic() < end:
-            for member in members - asked:
+            for member in (m for m in members if m not in asked):
                 with contextlib.suppress(psutil.NoSuchProcess):
                     stop(member)
-            asked |= members
+            asked.update(members)
             psutil.wait_procs(members, timeout=POLL)
     process.wait()
 
 
-def session(leader: int) -> set[psutil.Process]:
-    """The living processes of the session that `leader` began."""
-    members = set()
+def session(leader: int) -> list[psutil.Process]:
+    """The living processes of the session that `leader` began, the oldest first."""
+    members = []
     for member in psutil.process_iter():
         with contextlib.suppress(psutil.NoSuchProcess, ProcessLookupError):
             if os.getsid(member.pid) == leader and member.status() != psutil.STATUS_ZOMBIE:
-                members.add(member)
+                members.append(member)
     return members
 
 
