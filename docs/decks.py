@@ -61,12 +61,13 @@ epdem doctor --json                                               # engines and 
 epdem predict --material steel --radius "10 mm" --speed "5 m/s" --json  # e_n, contact time, peak force, and warnings
 epdem deck cases/steel_wall.toml -e lammps -o example --reasons   # a deck to compare with, the reason of each line
 epdem deck --convert my.in --set yieldPressure=2.8e9 -o converted # a deck of LIGGGHTS with a law; changes on stderr
+epdem deck --check my.in                                          # inputs of LIGGGHTS that are probably wrong: exit code 1
 epdem verify contacts -e lammps --json                            # the laws on this machine, against closed forms
 ```
 
-No command checks a deck of another program without running it. A run checks it: `epdem-liggghts -in my.in` and LAMMPS
-end before the first step with exit code 1 and a line `ERROR: ...` that names model, property, value, types and range;
-YADE raises `RuntimeError`. Commands of epdem end with 0, 1 (a check failed), 2 (input) or 3 (engine), and one sentence.
+A run checks the rest: `epdem-liggghts -in my.in` and LAMMPS end before the first step with exit code 1 and a line
+`ERROR: ...` that names model, property, value, types and range; YADE raises `RuntimeError`. Commands of epdem end with
+0, 1 (a check failed), 2 (input) or 3 (engine), and one sentence.
 
 - LIGGGHTS: keep the real Young's modulus (`hard_particles yes`); a plain `liggghts` does not have the models.
 - The [time step](choose.md#the-time-step) is 1/30 of the shortest contact at most; `epdem predict` names it.
