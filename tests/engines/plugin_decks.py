@@ -94,8 +94,11 @@ def run(folder, deck, *, ranks=1, files=None, command=None, preload=None, env=No
     (folder / "in.deck").write_text(deck)
     line = [command or launcher(), "-in", "in.deck"]
     env = dict(os.environ) | (env or {})
-    if preload:
-        env["LD_PRELOAD"] = preload
+    if preload:  # a name in LD_PRELOAD ends at a space
+        link = folder / "preloaded.so"
+        link.unlink(missing_ok=True)
+        link.symlink_to(preload)
+        env["LD_PRELOAD"] = str(link)
     if ranks > 1:
         extra = ["--allow-run-as-root"] if os.geteuid() == 0 else []
         line = [
