@@ -61,7 +61,7 @@ epdem doctor --json                                               # engines and 
 epdem predict --material steel --radius "10 mm" --speed "5 m/s" --json  # e_n, contact time, peak force, and warnings
 epdem deck cases/steel_wall.toml -e lammps -o example --reasons   # a deck to compare with, the reason of each line
 epdem deck --convert my.in --set yieldPressure=2.8e9 -o converted # a deck of LIGGGHTS with a law; changes on stderr
-epdem deck --check my.in                                          # inputs of LIGGGHTS that are probably wrong: exit code 1
+epdem deck --check my.in                                          # inputs of LIGGGHTS that are probably wrong
 epdem verify contacts -e lammps --json                            # the laws on this machine, against closed forms
 ```
 
