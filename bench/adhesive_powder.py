@@ -27,7 +27,7 @@ def standing(folder: Path, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Places [m] of the spheres when the sides are taken away and STANDING later, (n, 3) each."""
     restart = max(folder.glob("restart.*.bin"), key=lambda path: int(path.name.split(".")[1]))
     setup = (folder / "setup.in").read_text(encoding="utf-8").splitlines()
-    kept = [line for line in setup if not re.match(r"dump|compute|fix (plate|press_z)|thermo|dump_modify", line)]
+    kept = [line for line in setup if not re.match(r"dump|compute|fix (wall_plate|load)|thermo|dump_modify", line)]
     (folder / "standing.in").write_text("\n".join(kept) + "\n", encoding="utf-8")
     steps = math.ceil(STANDING / dt)
     head = [line for line in (folder / "in.scene").read_text(encoding="utf-8").splitlines() if "communicate" in line]

@@ -71,7 +71,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     out = last[last["z"] < p.scene.gates[0].at]["mass"].sum() / last["mass"].sum()
     if out < END:
         raise RuntimeError(f"outlet {outlet} d: only {out:.0%} of the filling came out; the flow has stopped")
-    found = discharge(p, case.scene, spheres, (BEGIN, END))
+    found = discharge(p, p.scene.check[0], spheres, (BEGIN, END))
     return Flow(outlet, found.rate, found.bulk, found.counted)
 
 

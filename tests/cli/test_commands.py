@@ -187,11 +187,14 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
     tables = {"checks": pd.DataFrame([check]), "rows": pd.DataFrame({"particles": [1]})}
     report.show(
         SimpleNamespace(
-            case=SimpleNamespace(name="s", case=SimpleNamespace(title=TITLE), scene=SimpleNamespace(measure=[])),
+            case=SimpleNamespace(
+                name="s",
+                case=SimpleNamespace(title=TITLE),
+            ),
             results=SimpleNamespace(tables=tables),
             warnings=["[/y]"],
             deck=SimpleNamespace(steps=1, time_step=1e-6),
-            plan=SimpleNamespace(steps=1, time_step=1e-6),
+            plan=SimpleNamespace(steps=1, time_step=1e-6, scene=SimpleNamespace(measure=[])),
             seconds=1.0,
             reused=False,
             resumed_from=None,

@@ -157,11 +157,11 @@ def test_impacts(case, changes, says, tmp_path):
             {"scene.duration": "1 s"},
             "loading and unloading follow from height, unload_stroke and speed",
         ),
-        ("peening_steel", {"scene.bed": [{"material": "steel", "radius": "1 mm"}]}, "give all three or none"),
+        ("peening_steel", {"scene.bed": [{"material": "shot", "radius": "1 mm"}]}, "give all three or none"),
         (
             "peening_steel",
             {
-                "scene.bed": [{"material": "steel", "radius": "1 mm"}],
+                "scene.bed": [{"material": "shot", "radius": "1 mm"}],
                 "scene.bed_count": 9,
                 "scene.bed_settle_time": "1 ms",
             },

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from parts_cases import CASE
 
-from epdem.case.kinds import parts
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes.timestep import highest_speed
@@ -42,7 +41,7 @@ def hopper(**keys):
 )
 def test_the_highest_speed_is_that_of_the_highest_fall(case):
     """v = sqrt(2 g h) with h between the planned top of the filling and the planned floor."""
-    scene = parts(case.scene)
+    scene = case.parts
     top = scene.random_fills[0].region.limits[5]
     floor = next(plane.at for plane in scene.planes if plane.name == "floor")
     assert highest_speed(case) == pytest.approx(math.sqrt(2 * 9.81 * (top - floor)), rel=1e-9)
@@ -58,6 +57,6 @@ def test_the_last_shot_of_a_stream_hits_with_the_energy_of_its_fall(gravity, spe
     """v^2 = v_0^2 + 2 g h; the stream is as high as its shot goes in count/rate."""
     keys = {"kind": "peening", "width": "10 mm", "speed": f"{speed!r} m/s", "rate": "1 kHz", "count": count}
     case = scene(keys | {"gravity": f"{gravity!r} m/s^2"})
-    height = parts(case.scene).random_fills[0].region.limits[5]
+    height = case.parts.random_fills[0].region.limits[5]
     assert height >= speed * count / 1000
     assert highest_speed(case) == pytest.approx(math.sqrt(speed**2 + 2 * gravity * height), rel=1e-9)

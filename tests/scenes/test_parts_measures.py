@@ -154,7 +154,7 @@ def test_a_bed_of_many_radii_makes_one_law_for_each_pair_of_materials(law, monke
     }
     made, real = [], LawSpec.backbone
     monkeypatch.setattr(LawSpec, "backbone", lambda self, **given: made.append(given) or real(self, **given))
-    found = measures.values_of(p, p.case.scene.measure[0], tables)
+    found = measures.values_of(p, p.scene.measure[0], tables)
     E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
     first = overlap if law == "hertz" else (math.pi * 0.2e6 / (2 * E_star)) ** 2 * radius
     assert (overlap >= first).all()

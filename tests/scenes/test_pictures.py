@@ -44,7 +44,7 @@ def test_the_rebounds_of_shot_stand_beside_theory():
     up = tables["particles"].query("vz > 0").groupby("id")["vz"].max()
     bars, theory = panel.series
     assert sum(bars.y[::2]) == len(up) > 0 and (bars.x[0], bars.x[-1]) == pytest.approx((up.min(), up.max()), abs=0.5)
-    assert theory.x[0] == pytest.approx(checks.single_rebound(p.case, p.case.scene))
+    assert theory.x[0] == pytest.approx(checks.single_rebound(p.case, p.scene.check[0]))
 
 
 def test_a_hopper_a_drum_and_a_bed_show_mass_torque_and_height():

@@ -14,6 +14,7 @@ from stored_runs import data_of
 
 from epdem.case.scene import parse
 from epdem.scenes import checks
+from epdem.scenes.columns import named_rows
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
 from epdem.studies.sweep.table import numbers_of, unit
@@ -44,10 +45,19 @@ def frames(p: ScenePlan, spheres: list[dict]) -> pd.DataFrame:
 def rows(p: ScenePlan, **columns) -> pd.DataFrame:
     """The rows of a plan; columns are numbers or functions of the steps."""
     steps = np.arange(0, p.steps + 1, p.every)
+    forces = {
+        "floor_load": ("floor_force_z", -1.0),
+        "plate_force": ("plate_force_z", 1.0),
+        "torque": ("drum_torque_y", 1.0),
+    }
+    given = {row.name: columns.pop(row.name, 0.0) for row in p.scene.row if row.name in forces}
     names = {"particles": float(p.case.scene.count), "kinetic_energy": 0.0} | columns
     values = {n: np.broadcast_to(f(steps) if callable(f) else f, steps.shape) for n, f in names.items()}
+    for name, f in given.items():
+        column, sign = forces[name]
+        values[column] = sign * np.broadcast_to(f(steps) if callable(f) else f, steps.shape)
     found = {int(s): [float(values[n][k]) for n in values] for k, s in enumerate(steps)}
-    return table_of_rows(p, found, list(values))
+    return named_rows(p, table_of_rows(p, found, list(values)))
 
 
 def verdict(p: ScenePlan, name: str, **tables: pd.DataFrame) -> dict:

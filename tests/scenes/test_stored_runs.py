@@ -15,7 +15,7 @@ from epdem.engines import log, scene_engine
 from epdem.engines.liggghts import scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
-from epdem.scenes.columns import COLUMNS, NORMAL, STRAINS, columns_of_rows
+from epdem.scenes.columns import COLUMNS, NORMAL, STRAINS, columns_of_rows, units
 
 
 @pytest.fixture(scope="module", params=RUNS)
@@ -91,7 +91,7 @@ def test_the_contacts_with_flat_walls_and_the_plate_are_where_these_are(stored):
 
 def plate_ends(p, tables):
     """Height of the plate at the end of each row's interval, by its two strokes."""
-    if "plate_force" not in p.row_columns:
+    if "plate" not in p.scene.meshes:
         return []
     s, turn = p.case.scene, p.phases[0].end * p.time_step
     rows = tables["rows"][["step", "time"]].copy()
@@ -137,7 +137,7 @@ def test_the_energy_balance_adds_up(stored):
     p, tables = stored
     table, spheres = checks.energy_balance(p, tables), tables["particles"]
     first = spheres[spheres["step"] == table["step"].iloc[0]]
-    lift = p.case.scene.gravity * (first["mass"] * first["z"]).sum()
+    lift = p.scene.gravity * (first["mass"] * first["z"]).sum()
     assert table["gravity"].iloc[0] == pytest.approx(lift, rel=1e-12, abs=1e-300)
     assert "friction" not in table, "nothing rubs"
     # the work of plate and drum is the sum of means over a row; eight rows are few
@@ -152,25 +152,28 @@ def test_the_energy_balance_adds_up(stored):
 def test_every_column_has_a_sentence_and_a_unit_unless_it_is_a_name_or_a_count(stored):
     p, tables = stored
     found = {c for table in [*tables.values(), checks.energy_balance(p, tables)] for c in table}
-    assert found - set(COLUMNS) == {
+    named = {row.name: row for row in p.scene.row}
+    assert found - set(COLUMNS) - set(named) == {
         f"delta_max_{w.name}" for w in p.scene.planes if f"delta_max_{w.name}" in tables["particles"]
     }
+    assert set(named) <= set(tables["rows"]) and {*units(tables["rows"])} >= set(named)
     without = {c for c in found & set(COLUMNS) if not COLUMNS[c].unit}
-    assert without == {"step", "particles", "id", "type", "wall", "i", "j", *NORMAL, *STRAINS}
+    of_phases = {"phase", "begin", "end", "until"}
+    assert without == {"step", "particles", "id", "type", "wall", "i", "j", *NORMAL, *STRAINS} | of_phases
     assert all(COLUMNS[c].sentence for c in found & set(COLUMNS))
 
 
 CONTINUED = """
-Step Atoms KinEng load
+Step Atoms KinEng load1[3]
        0        8             0              0
      630        8          5e-7          1e-3
     1260        8          2e-6          2e-3
 Loop time of 1 on 1 procs for 1260 steps with 8 atoms
-Step Atoms KinEng load
+Step Atoms KinEng load1[3]
     1260        8          2e-6          2e-3
     1890        8          9.9           9.9
 LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0)
-Step Atoms KinEng load
+Step Atoms KinEng load1[3]
     1260        8          2e-6             0
     1890        7          4e-6          3e-3
 """
@@ -180,7 +183,7 @@ def test_a_continued_log_keeps_the_row_of_its_restart_and_replaces_what_came_aft
     (tmp_path / "log").write_text(CONTINUED)
     rows = log.scene_rows(planned("settle"), tmp_path / "log")
     assert rows["step"].to_list() == [0, 630, 1260, 1890]
-    assert rows["floor_load"].to_list() == [0, 1e-3, 2e-3, 3e-3]
+    assert (-rows["floor_force_z"]).to_list() == [0, 1e-3, 2e-3, 3e-3]  # of a plane the log has the force on spheres
     assert rows["particles"].to_list() == [8, 8, 8, 7]
 
 

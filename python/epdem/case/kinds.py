@@ -1,339 +1,179 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The kinds of scenes: keys, and a function for each kind from its keys to room, walls, fills and phases. SI."""
+"""Kinds of scenes: files with keys, their units and limits at the head, and below them the TOML of a scene of parts.
+
+The kinds of epdem are in templates/kinds; a case names one of its own by its path ("./mill.toml.j2").
+"""
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Annotated, Any, Literal, Self, get_args
+import tomllib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, model_validator
+import jinja2
+from pydantic import Field, ValidationError, ValidationInfo, create_model, model_validator
+from pydantic_core import PydanticKnownError
 
+from ..base import paths
+from ..base.rendering import OPTIONS, number
 from ..errors import CaseError
-from .fields import Frozen, Gravity, Length, Name, Quantity, Speed
-from .parts import Fill, Measure, Parts
+from .fields import Frozen, Name, Quantity
+from .messages import explain
+from .parts import Measure, Parts
 from .sizes import Count, Mixture, Particles, refuse_shares
-from .walls import (
-    AnyWall,
-    CylinderWall,
-    LinearMove,
-    Phase,
-    PlaneWall,
-    PlateWall,
-    Rate,
-    RevolvedWall,
-    Room,
-    Time,
-    Upright,
-)
+from .toml import KIND, text_of
+
+BODY = "[scene]"  # the line at which the TOML of parts begins
+TYPES: dict[str, Any] = {"particles": Mixture, "count": Count, "material": Name, "bool": bool}
 
 
-class Common(Frozen):
-    """The keys of every kind of scene."""
+class Keys(Frozen):
+    """The keys of a kind; `body`: template of the parts."""
 
-    particles: Mixture
-    count: Count
-    walls: Name  # material of the walls
-    gravity: Gravity = 9.81
+    body: ClassVar[str]
+    heads: ClassVar[dict[str, dict[str, Any]]]
+    kind: str
     measure: list[Measure] = Field(default_factory=list, max_length=64)
 
+    def of_type(self, wanted: str) -> dict[str, Any]:
+        """The given values of the keys of a type."""
+        names = [name for name, head in self.heads.items() if head.get("type") == wanted]
+        return {name: value for name in names if (value := getattr(self, name)) is not None}
+
     @model_validator(mode="after")
-    def _shares(self) -> Self:
-        refuse_shares(self.particles)
+    def _shares(self) -> "Keys":
+        for mixture in self.of_type("particles").values():
+            refuse_shares(mixture)
         return self
 
     @property
     def named_materials(self) -> list[tuple[str, str]]:
         """(place, material) of every name of a material."""
-        return [("scene.walls", self.walls), *(("scene.particles.material", p.material) for p in self.particles)]
+        found = [(f"scene.{key}", name) for key, name in self.of_type("material").items()]
+        mixtures = self.of_type("particles").items()
+        return [*found, *((f"scene.{key}.material", p.material) for key, mixture in mixtures for p in mixture)]
 
 
-class Settle(Common):
-    """Spheres poured into a box (x, y, z inside) with its floor at z = 0."""
+class _Mixture(list[Particles]):
+    """A mixture with the name of its key, for which the TOML of parts holds the name alone."""
 
-    kind: Literal["settle"]
-    duration: Time
-    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
-    periodic: bool = False  # in x and y, instead of side walls
-    rate: Rate | None = None  # spheres per second; none: all at once
+    def __init__(self, key: str, particles: list[Particles]):
+        super().__init__(particles)
+        self.key = key
 
 
-class Hopper(Common):
-    """Discharge of a round bin with a conical hopper of triangles; `fill_time` is the time before the outlet opens."""
-
-    kind: Literal["hopper"]
-    duration: Time
-    bin_diameter: Length
-    bin_height: Length
-    outlet: Length
-    half_angle: Annotated[float, Quantity("rad", above=0.0, le=1.5707963267948966)]
-    outlet_height: Length  # from the outlet to the floor
-    fill_time: Time
-
-    @property
-    def cone_depth(self) -> float:
-        """Height of the cone [m]."""
-        return (self.bin_diameter - self.outlet) / 2 / math.tan(self.half_angle)
-
-    @model_validator(mode="after")
-    def _narrows(self) -> Self:
-        if not self.outlet < self.bin_diameter:
-            raise ValueError(f"outlet ({self.outlet:g} m) must be below bin_diameter ({self.bin_diameter:g} m)")
-        return self
+def names() -> list[str]:
+    """The names of the kinds of epdem, and of a scene of parts."""
+    files = (paths.beside("templates") / "kinds").glob(f"*{KIND}")
+    return [*sorted(path.name.removesuffix(KIND) for path in files), "parts"]
 
 
-class Drum(Common):
-    """A drum of triangles turning about y, with flat ends.
-
-    It is round, so its surface moves and its triangles stay: the same to a sphere, without rebuilding lists, and a
-    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh has only a step later.
-    """
-
-    kind: Literal["drum"]
-    duration: Time
-    diameter: Length
-    length: Length
-    angular_velocity: Annotated[float, Quantity("rad/s", above=0.0)]  # "20 rpm"
+def _annotation(head: dict[str, Any]) -> tuple[Any, Any]:
+    """(type, default) of a key for pydantic."""
+    limits = {name: head[name] for name in ("above", "ge", "le") if name in head}
+    found: Any = TYPES[head["type"]] if "type" in head else Annotated[float, Quantity(head["unit"], **limits)]
+    if "values" in head:
+        found = Annotated[list[found], Field(min_length=head["values"], max_length=head["values"])]
+    if head.get("optional"):
+        return found | None, None
+    return found, head.get("default", ...)
 
 
-class Compaction(Common):
-    """Uniaxial loading and unloading between plates; sides periodic. No `duration`: strokes and speed give it."""
-
-    kind: Literal["compaction"]
-    gravity: Gravity = 0.0
-    duration: Time | None = None
-    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
-    height: Length  # of the gap between the plates at the end of loading
-    unload_stroke: Length  # stroke of unloading
-    settle_time: Time | None = None  # before loading: the spheres fall on the lower plate
-    speed: Speed  # of the upper plate, loading
-    unload_speed: Speed | None = None  # unloading; default: a tenth, because it ends within a short stroke
-
-    @property
-    def release(self) -> float:
-        """Speed of the upper plate while unloading [m/s]."""
-        return self.unload_speed or 0.1 * self.speed
-
-    @model_validator(mode="after")
-    def _order(self) -> Self:
-        if not self.height < self.box[2]:
-            raise ValueError(f"height ({self.height:g} m) must be below the box's height ({self.box[2]:g} m)")
-        if self.settle_time is not None and not self.gravity:
-            raise ValueError("spheres fall under gravity; give gravity, or remove settle_time")
-        if self.duration is not None:
-            raise ValueError("duration: loading and unloading follow from height, unload_stroke and speed; remove it")
-        return self
+@cache
+def keys_of(path: Path, text: str) -> type[Keys]:
+    """The model of the keys of a kind, from the text of its file. Raises ValueError for a head that is no good."""
+    head, line, below = text.partition(f"\n{BODY}\n")
+    try:
+        heads = tomllib.loads(head)["keys"]
+        fields: dict[str, Any] = {name: _annotation(key) for name, key in heads.items()}
+    except (tomllib.TOMLDecodeError, KeyError, TypeError) as error:
+        raise ValueError(f"{path}: [keys] at the head has a mistake: {error}") from None
+    model = create_model(path.name.removesuffix(KIND), __base__=Keys, **fields)
+    model.body, model.heads = line + below, heads
+    return model
 
 
-class Peening(Common):
-    """A stream of shot along -z on a plate of the walls' material, or on a bed of spheres that lies on it."""
-
-    kind: Literal["peening"]
-    duration: Time
-    gravity: Gravity = 0.0
-    width: Length  # of the square that the stream hits
-    speed: Speed
-    rate: Rate  # spheres per second
-    bed: list[Particles] = Field(default_factory=list)
-    bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
-    bed_settle_time: Time | None = None
-
-    @property
-    def named_materials(self) -> list[tuple[str, str]]:
-        return [*super().named_materials, *(("scene.bed.material", p.material) for p in self.bed)]
-
-    @model_validator(mode="after")
-    def _bed(self) -> Self:
-        if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_settle_time is not None):
-            raise ValueError("a bed needs 'bed', 'bed_count' and 'bed_settle_time'; give all three or none")
-        if self.bed and not self.gravity:
-            raise ValueError("a bed settles under gravity; give gravity")
-        return self
-
-
-Kinds = Settle | Hopper | Drum | Compaction | Peening | Parts
-KINDS: tuple[str, ...] = tuple(get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(Kinds))
-
-
-class KindFill(Fill):
-    """A fill of a kind of scene; `key`: the key of its count in the case."""
-
-    key: str
-
-
-class Preset(Parts):
-    """The parts of a kind of scene; bounds: fall_height [m] and drive [m/s], below the bounds of Parts."""
-
-    bounds: tuple[float, float]
-
-    @property
-    def fall_height(self) -> float:
-        return self.bounds[0]
-
-    @property
-    def drive(self) -> float:
-        return self.bounds[1]
-
-
-def _plane(name: str, axis: str, at: float, material: str, phases: tuple[str, ...] = ()) -> PlaneWall:
-    return PlaneWall.model_construct(name=name, kind="plane", axis=axis, at=at, material=material, phases=list(phases))
-
-
-def _sides(x: float, y: float, material: str) -> list[PlaneWall]:
-    """Four upright walls at +-x and +-y."""
-    ends = (("left", "x", -x), ("right", "x", x), ("front", "y", -y), ("back", "y", y))
-    return [_plane(name, axis, at, material) for name, axis, at in ends]
-
-
-def _room(*limits: float) -> Room:
-    xlo, xhi, ylo, yhi, zlo, zhi = limits
-    return Room.model_construct(x=[xlo, xhi], y=[ylo, yhi], z=[zlo, zhi])
-
-
-def _phase(name: str, duration: float, *moves: LinearMove) -> Phase:
-    return Phase.model_construct(name=name, duration=duration, move=list(moves))
-
-
-def _largest(particles: list[Particles]) -> float:
-    return max(p.radii()[1] for p in particles)
-
-
-def _fill(particles: list[Particles], count: int, region: Room | Upright, **more: Any) -> KindFill:
-    values = {"name": "spheres", "key": "scene.count", **more}
-    return KindFill.model_construct(particles=particles, count=count, region=region, **values)
-
-
-def _preset(
-    s: Any, room: Room, wall: Sequence[AnyWall], fill: list[KindFill], phase: list[Phase], **more: Any
-) -> Preset:
-    values = {"kind": "parts", "gravity": s.gravity, "measure": s.measure, **more}
-    return Preset.model_construct(room=room, wall=list(wall), fill=fill, phase=phase, **values)
-
-
-def _settle(s: Settle) -> Preset:
-    lx, ly, lz = s.box
-    x, y = lx / 2, ly / 2
-    if s.rate is None:
-        fill = _fill(s.particles, s.count, _room(-x, x, -y, y, 0.0, lz))
+def model_of(kind: object, folder: Path = Path()) -> type[Keys] | None:
+    """The model of the keys of a kind by its name, or by its path from `folder`; None for no kind that is known."""
+    if not isinstance(kind, str):
+        return None
+    if kind.endswith(KIND):
+        path = folder / kind
+    elif kind in names()[:-1]:
+        path = paths.beside("templates") / "kinds" / f"{kind}{KIND}"
     else:
-        # a layer at the top; what fell out of the layer makes room for the next spheres
-        depth = min(lz / 4, 8 * _largest(s.particles))
-        fill = _fill(s.particles, s.count, _room(-x, x, -y, y, lz - depth, lz), rate=s.rate)
-        if s.count / s.rate > s.duration:
-            raise CaseError(f"scene.duration = {s.duration:g} s ends before all are poured ({s.count / s.rate:g} s)")
-    room = _room(-x, x, -y, y, 0.0, 1.5 * lz)  # the walls go on above the box: what bounces high falls back
-    walls = [_plane("floor", "z", 0.0, s.walls), *([] if s.periodic else _sides(x, y, s.walls))]
-    return _preset(s, room, walls, [fill], [_phase("settle", s.duration)], periodic=s.periodic, bounds=(lz, 0.0))
+        return None
+    return keys_of(path, text_of(path))
 
 
-def _hopper(s: Hopper) -> Preset:
-    r, top = s.bin_diameter / 2, s.bin_height
-    low = float(f"{-s.cone_depth - s.outlet_height:.10g}")
-    outlet = low + s.outlet_height
-    a = r + 0.1 * r
-    profile = [(s.outlet / 2, outlet), (r, 0.0), (r, top)]
-    walls: list[AnyWall] = [
-        _plane("floor", "z", low, s.walls),
-        *_sides(a, a, s.walls),
-        RevolvedWall.model_construct(name="hopper", kind="revolved", material=s.walls, profile=profile),
-        _plane("shutter", "z", outlet, s.walls, ("fill",)),
-    ]
-    bin_ = Upright.model_construct(diameter=2 * (r - _largest(s.particles)), z=[0.0, top])
-    return _preset(
-        s,
-        _room(-a, a, -a, a, low, 1.5 * top),  # what bounces high stays in the room
-        walls,
-        [_fill(s.particles, s.count, bin_)],
-        [_phase("fill", s.fill_time), _phase("discharge", s.duration)],
-        bounds=(s.bin_height + s.cone_depth + s.outlet_height, 0.0),
-    )
+def read_scene(value: object, info: ValidationInfo) -> Keys | Parts:
+    """The keys of a kind, or the scene of parts, from the table [scene] of a case."""
+    if isinstance(value, Keys | Parts):
+        return value
+    if not isinstance(value, dict):
+        raise PydanticKnownError("model_attributes_type")
+    kind = value.get("kind")
+    if kind is None:
+        raise PydanticKnownError("union_tag_not_found", {"discriminator": "'kind'"})
+    context: dict[str, Any] = info.context or {}
+    if kind == "parts":
+        return Parts.model_validate(value, context=context)
+    model = model_of(kind, Path(context.get("folder", ".")))
+    if model is None:
+        tags = {"discriminator": "'kind'", "tag": str(kind), "expected_tags": ", ".join(map(repr, names()))}
+        raise PydanticKnownError("union_tag_invalid", tags)
+    return model.model_validate(value, context=context)
 
 
-def _drum(s: Drum) -> Preset:
-    r, half = s.diameter / 2, s.length / 2
-    side, end = r + 0.05 * r, half + 0.05 * r
-    a = 0.7 * (r - _largest(s.particles))  # a block inside the circle
-    tube = CylinderWall.model_construct(
-        name="drum",
-        kind="cylinder",
-        material=s.walls,
-        axis="y",
-        start=-s.length * 1.02 / 2,
-        to=s.length * 1.02 / 2,
-        diameter=s.diameter,
-        angular_velocity=s.angular_velocity,
-    )
-    return _preset(
-        s,
-        _room(-side, side, -end, end, -side, side),
-        [_plane("front", "y", -half, s.walls), _plane("back", "y", half, s.walls), tube],
-        [_fill(s.particles, s.count, _room(-a, a, -half, half, -a, a))],
-        [_phase("turn", s.duration)],
-        bounds=(s.diameter, s.angular_velocity * s.diameter / 2),
-    )
+def _refuse(text: str) -> None:
+    raise CaseError(text if text.startswith("scene.") else f"scene: {text}")
 
 
-def _compaction(s: Compaction) -> Preset:
-    lx, ly, lz = s.box
-    x, y = lx / 2, ly / 2
-
-    def plate(speed: float) -> LinearMove:
-        return LinearMove.model_construct(wall="plate", kind="linear", velocity=[0.0, 0.0, speed])
-
-    phases = [
-        *([_phase("fall", s.settle_time)] if s.settle_time else []),
-        _phase("load", (lz - s.height) / s.speed, plate(-s.speed)),
-        _phase("unload", s.unload_stroke / s.release, plate(s.release)),
-    ]
-    upper: AnyWall = PlateWall.model_construct(
-        name="plate", kind="plate", material=s.walls, axis="z", center=[0.0, 0.0, lz], size=[lx, ly]
-    )
-    return _preset(
-        s,
-        _room(-x, x, -y, y, 0.0, 1.05 * lz),
-        [_plane("floor", "z", 0.0, s.walls), upper],
-        [_fill(s.particles, s.count, _room(-x, x, -y, y, 0.0, lz))],
-        phases,
-        periodic=True,
-        bounds=(lz, 2.0 * s.speed),
-    )
-
-
-def _peening(s: Peening) -> Preset:
-    """The stream is a column of shot above the target: a sphere that hits at time t starts speed * t above it.
-
-    All places are therefore known at the start, and a continued run has the same ones.
-    """
-    gap = 4 * _largest(s.particles)
-    base = s.width if s.bed else 0.0
-    foot, a = base + gap, s.width / 2
-    top = foot + s.speed * s.count / s.rate
-    stream = _room(-a, a, -a, a, foot, top)
-    fills = [_fill(s.particles, s.count, stream, velocity=[0.0, 0.0, -s.speed], phase="peen")]
-    phases = [_phase("peen", s.duration)]
-    if s.bed_settle_time is not None:
-        bed = _room(-a, a, -a, a, 0.0, base)
-        fills.insert(0, _fill(s.bed, s.bed_count, bed, name="bed", key="scene.bed_count"))
-        phases.insert(0, _phase("fill", s.bed_settle_time))
-    return _preset(
-        s,
-        _room(-a, a, -a, a, 0.0, float(f"{top + gap:.10g}")),
-        [_plane("floor", "z", 0.0, s.walls)],
-        fills,
-        phases,
-        periodic=True,
-        open_boundary=True,
-        bounds=(0.0, math.hypot(s.speed, math.sqrt(2.0 * s.gravity * top))),  # the last shot falls from the top
-    )
-
-
-_PRESETS: dict[type[Kinds], Callable[..., Preset]] = {
-    Settle: _settle,
-    Hopper: _hopper,
-    Drum: _drum,
-    Compaction: _compaction,
-    Peening: _peening,
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "refuse": _refuse,
+    "rounded": lambda x: float(f"{x:.10g}"),
+    **{name: getattr(math, name) for name in ("tan", "sqrt", "hypot")},
 }
 
 
-def parts(scene: Kinds) -> Parts:
-    """The scene as a scene of parts. Raises CaseError for lengths that do not fit together."""
-    return scene if isinstance(scene, Parts) else _PRESETS[type(scene)](scene)
+def _written(value: Any) -> Any:
+    """A value as the TOML of parts has it."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case float():
+            return number(value)
+        case _Mixture():
+            return f'"{value.key}"'
+    return value
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    env = jinja2.Environment(**OPTIONS, finalize=_written)
+    env.globals.update(FUNCTIONS)
+    return env
+
+
+def parts(keys: Keys | Parts, output: object) -> Parts:
+    """The scene of parts that the keys of a kind make, with the tables of `output`. Raises CaseError for values that do
+    not fit together."""
+    if isinstance(keys, Parts):
+        return keys
+    mixtures = {key: _Mixture(key, found) for key, found in keys.of_type("particles").items()}
+    largest = {key: max(p.radii()[1] for p in mixture) for key, mixture in mixtures.items()}
+    values = {name: getattr(keys, name) for name in keys.heads} | mixtures
+    place = f"scene of kind {keys.kind!r}"
+    try:
+        text = _environment().from_string(keys.body).render(values, largest=largest, output=output)
+        scene = tomllib.loads(text)["scene"]
+    except (jinja2.TemplateError, tomllib.TOMLDecodeError, TypeError, ArithmeticError) as error:
+        raise CaseError(f"{place}: {error}") from None
+    for fill in scene.get("fill", []):
+        if isinstance(fill.get("particles"), str):
+            fill["particles"] = list(mixtures[fill["particles"]])
+    try:
+        return Parts.model_validate({"kind": "parts", **scene, "measure": [*scene.get("measure", []), *keys.measure]})
+    except ValidationError as error:
+        raise CaseError(explain(place, scene, error, "scene")) from None

@@ -6,8 +6,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from .kinds import KINDS
-
 LONGEST = 80  # characters of a value that a message shows
 SHAPES = ("model_type", "model_attributes_type", "dict_type", "list_type")
 TEXTS = {
@@ -89,7 +87,7 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
         keys, value = (*keys, "kind"), value.get("kind") if isinstance(value, dict) else None
     place = ".".join(map(_key, keys))
     if problem["type"].startswith("union_tag"):
-        known = context.get("expected_tags") or (", ".join(KINDS) if place == "scene.kind" else "")
+        known = context.get("expected_tags")
         text = f"must be one of {known}" if known else "is missing; add it"
     elif problem["type"] == "too_short":
         least, given = context["min_length"], context["actual_length"]

@@ -10,6 +10,7 @@ from pydantic import Field, Tag, model_validator
 
 from ..base.tables import Quantity as Column
 from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, nothing
+from .outputs import Check, Row
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
 from .walls import (
     Axis,
@@ -160,6 +161,7 @@ class Fill(Frozen):
     rate: Rate | None = None
     velocity: Speeds = Field(default_factory=nothing)
     phase: PartName | None = None
+    exact: bool = True  # false: spheres that are in the region before count, too
 
     @model_validator(mode="after")
     def _amount(self) -> Self:
@@ -241,6 +243,8 @@ class Parts(Frozen):
     """A scene of any parts, in a room beyond whose limits spheres are lost.
 
     periodic: in x and y. open_boundary: spheres may leave the room. Gravity acts along -z.
+    highest_fall, highest_drive: of a kind, in place of those that follow from the parts. places: keys of a kind by the
+    places of the parts that follow from them, for messages.
     """
 
     kind: Literal["parts"]
@@ -253,6 +257,12 @@ class Parts(Frozen):
     body: list[Body] = Field(default_factory=list, max_length=1000)
     phase: Annotated[list[Phase], Field(min_length=1, max_length=64)]
     measure: list[Measure] = Field(default_factory=list, max_length=64)
+    row: list[Row] = Field(default_factory=list, max_length=64)
+    check: list[Check] = Field(default_factory=list, max_length=64)
+    key_figure: list[Name] = Field(default_factory=list, max_length=4)
+    highest_fall: Annotated[float, Quantity("m", ge=0.0)] | None = None
+    highest_drive: Annotated[float, Quantity("m/s", ge=0.0)] | None = None
+    places: dict[str, str] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _parts(self) -> Self:
@@ -277,6 +287,9 @@ class Parts(Frozen):
                     )
             if p.until and p.until.wall and p.until.wall not in [w.name for w in self.wall]:
                 raise ValueError(f"phase.{p.name}.until.wall = {p.until.wall!r} is no wall")
+        for row in self.row:
+            if row.wall not in (moving if row.position or row.torque else [w.name for w in self.wall]):
+                raise ValueError(f"row.{row.name}.wall: {row.wall!r} is no wall that has a {row.quantity}")
         for w in self.wall:
             if isinstance(w, PlaneWall) and w.phases:
                 places = sorted(phases.index(name) for name in w.phases)
@@ -298,6 +311,10 @@ class Parts(Frozen):
         found += [(f"body.{b.name}.phase", b.phase) for b in self.body if b.phase]
         found += [(f"wall.{w.name}.phases", p) for w in self.wall if isinstance(w, PlaneWall) for p in w.phases]
         return found
+
+    def place(self, name: str) -> str:
+        """The place of a part in the case: for a part of a kind its key."""
+        return self.places.get(name, name)
 
     @cached_property
     def table(self) -> list[Sphere]:
@@ -357,11 +374,13 @@ class Parts(Frozen):
     @property
     def fall_height(self) -> float:
         """The height of the highest free fall [m]."""
-        return self.room.z[1] - self.room.z[0]
+        return self.room.z[1] - self.room.z[0] if self.highest_fall is None else self.highest_fall
 
     @property
     def drive(self) -> float:
         """The highest speed that anything has from outside [m/s]."""
+        if self.highest_drive is not None:
+            return self.highest_drive
         velocities = [*(s.velocity for s in self.table), *(b.velocity for b in self.body)]
         speeds = [math.hypot(*v) for v in (*velocities, *(f.velocity for f in self.random_fills))]
         turns = (w for w in self.wall if isinstance(w, CylinderWall | ConeWall))

@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import ConfigDict, Field, ValidationError, model_validator
+from pydantic import ConfigDict, Field, PlainValidator, ValidationError, model_validator
 
 from ..errors import CaseError
 from .fields import (
@@ -22,12 +22,12 @@ from .fields import (
     Tangential,
     Viscous,
 )
-from .kinds import Kinds, parts
+from .kinds import Keys, parts, read_scene
 from .law import check_law
 from .messages import explain
 from .parts import Parts
 from .sizes import Share, context
-from .toml import named, read_toml, with_library
+from .toml import KIND, named, read_toml, with_library
 from .walls import PartName, Time
 
 
@@ -125,7 +125,7 @@ class SceneCase(Frozen):
     case: Header
     materials: dict[Name, SceneMaterial]
     law: LawChoice
-    scene: Annotated[Kinds, Field(discriminator="kind")]
+    scene: Annotated[Keys | Parts, PlainValidator(read_scene)]
     viscous: Viscous | None = None
     contact: Contact = Contact()
     output: Output = Output()
@@ -154,10 +154,15 @@ class SceneCase(Frozen):
     def name(self) -> str:
         return self.case.name
 
+    @property
+    def kind(self) -> str:
+        """The name of the kind of scene."""
+        return Path(self.scene.kind).name.removesuffix(KIND)
+
     @cached_property
     def parts(self) -> Parts:
-        """The scene as a scene of parts. Raises CaseError for lengths that do not fit together."""
-        return parts(self.scene)
+        """The scene as a scene of parts. Raises CaseError for values that do not fit together."""
+        return parts(self.scene, self.output)
 
 
 def is_scene(data: dict[str, Any]) -> bool:
@@ -173,6 +178,8 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "scene")) from None
     check_law(case.law, case.materials, path)
+    with named(path):
+        assert case.parts  # values that do not fit together are refused here
     return case
 
 

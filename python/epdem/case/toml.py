@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 from ..base.declarations import declarations
 from ..errors import CaseError
 
-KEYS = ("file", "sieve")  # of the names of files
+KEYS = ("file", "sieve", "kind")  # of the names of files
+KIND = ".toml.j2"  # at the end of the name of a file with a kind of scene: other kinds are no files
 MAX_BYTES = 1_000_000  # of a case file
 MAX_DEPTH = 20  # of tables and lists in each other
 _DOTTED_KEY = re.compile(
@@ -94,8 +95,12 @@ def names_in(data: object) -> set[str]:
     parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     found: set[str] = set()
     for key, value in parts:
-        found |= {value} if key in KEYS and isinstance(value, str) else names_in(value)
+        found |= {value} if _is_file(key, value) else names_in(value)
     return found
+
+
+def _is_file(key: object, value: object) -> bool:
+    return key in KEYS and isinstance(value, str) and (key != "kind" or value.endswith(KIND))
 
 
 def located(key: str, value: Any, folder: Path) -> Any:
@@ -107,7 +112,7 @@ def located(key: str, value: Any, folder: Path) -> Any:
         return {name: located(f"{key}.{name}", v, folder) for name, v in value.items()}
     if isinstance(value, list):
         return [located(f"{key}.{n}", v, folder) for n, v in enumerate(value)]
-    if key.rpartition(".")[2] not in KEYS or not isinstance(value, str):
+    if not _is_file(key.rpartition(".")[2], value):
         return value
     path = (folder / value).resolve()
     if not path.is_file():

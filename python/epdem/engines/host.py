@@ -12,7 +12,6 @@ import pandas as pd
 from ..base import rendering as decks
 from ..base.files import stored_results, write_texts
 from ..case import impact, scene
-from ..case.parts import Parts
 from ..case.toml import named, read_toml
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Trajectory
@@ -21,6 +20,7 @@ from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
 from ..jobs.engine import Feature, Report, check_law, silent
 from ..jobs.stage import Tables
+from ..scenes.columns import named_rows
 from ..scenes.engine import Resumed
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
@@ -81,14 +81,14 @@ class Host(ABC):
         """
         out, own = folder / self.out, self.scene_tables
         plan = plan.ended(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
-        found: Tables = {"rows": own.rows(plan, out)}
+        found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
         if plan.frames:
             found["particles"] = own.particles(plan, folder, without)
         if plan.contacts:
             found["contacts"] = own.contact_table(plan, folder, found["particles"], without)
         if plan.stress_walls:
             found["walls"] = own.wall_table(plan, folder, without)
-        return found | ({"phases": plan.phase_table} if isinstance(plan.case.scene, Parts) else {})
+        return found | {"phases": plan.phase_table}
 
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):

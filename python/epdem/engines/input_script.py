@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.rendering import Deck, number
-from ..case.parts import Parts
 from ..errors import CaseError
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan, room, side_by_side
@@ -99,9 +98,9 @@ def default_skin(p: ScenePlan) -> float:
     return float(f"{SKIN * p.smallest:.1e}")
 
 
-def wall_id(p: ScenePlan, name: str) -> str:
+def wall_id(name: str) -> str:
     """The id of a wall's fix: a name that a user gives to a part must not be the id of another fix."""
-    return f"wall_{name}" if isinstance(p.case.scene, Parts) else name
+    return f"wall_{name}"
 
 
 def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
@@ -113,9 +112,9 @@ def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
 
 
 def row_words(p: ScenePlan) -> Iterator[str]:
-    """Words of the rows beside the strain: columns of kinds; of walls three components of the force, of meshes six."""
+    """Words of the rows beside the strain: power; of walls three components of the force, of meshes six."""
     yield from (f"f_{word}" for word, column in log.ROWS.items() if column in p.row_columns)
-    for n, name in enumerate(p.loads, 1):
+    for n, name in enumerate(p.measured_walls, 1):
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 
 
@@ -165,7 +164,7 @@ def stop_condition(p: ScenePlan, phase: Deck, place: Callable[[PressedBed], str]
     elif until.count is not None:
         formula, sign = "atoms", "<="
     else:
-        load = f"f_load{1 + p.loads.index(until.wall or '')}"
+        load = f"f_load{1 + p.measured_walls.index(until.wall or '')}"
         formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
     return StopCondition(first, (phase.steps - first) // p.every, formula, f"{sign} {number(until.limit)}", void)
 

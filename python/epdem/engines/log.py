@@ -18,9 +18,6 @@ _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d
 ROWS = {
     "Atoms": "particles",
     "KinEng": "kinetic_energy",
-    "load": "floor_load",
-    "press_z": "plate_force",
-    "torque": "torque",
     "power": "wall_power",
     "ratio[1]": columns.STRAINS[0],
     "ratio[2]": columns.STRAINS[1],
@@ -55,7 +52,7 @@ def _column(p: ScenePlan, word: str) -> str | None:
     """The column of a thermo word, with LAMMPS's f_ or without; None: one that is not ours."""
     word = word.removeprefix("f_")
     if load := _LOAD.fullmatch(word):
-        return f"{p.loads[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
+        return f"{p.measured_walls[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
     return ROWS.get(word)
 
 
@@ -77,7 +74,7 @@ def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] | None = Non
         known = {step: row for step, row in table.items() if step <= steps[0]}
         table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
     found = columns.rows(p, table, [*words.values()])
-    on_spheres = {w.name for w in p.scene.planes} & {*p.loads} if on_spheres is None else on_spheres
+    on_spheres = {w.name for w in p.scene.planes} & {*p.measured_walls} if on_spheres is None else on_spheres
     opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
     found[opposite] = -found[opposite]
     return found

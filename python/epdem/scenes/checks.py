@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from ..base.tables import Quantity
-from ..case.kinds import Compaction, Hopper, Peening, Settle
-from ..case.parts import Parts
+from ..case.outputs import BedRebound, FloorLoad, MassFlow, Press, ReboundSpeed
+from ..case.outputs import Row as NamedRow
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
 from .columns import last_frame
@@ -34,23 +34,25 @@ def rotation(spheres: pd.DataFrame) -> pd.Series:
 def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     """Work [J] that moving walls have done up to each row: mean force or torque of the interval times the displacement.
 
-    The torque of a drum counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the energies.
+    The torque of a round wall counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the
+    energies.
     """
     dt = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
-    if "plate_force" in p.row_columns:
-        return np.cumsum(rows["plate_force"].to_numpy() * -plate_velocity(p, rows) * dt)
-    if "torque" in p.row_columns:
-        (rotation_of_drum,) = p.rotations("drum")
-        return np.cumsum(-rows["torque"].to_numpy() * rotation_of_drum.rate * dt)
     if "wall_power" in p.row_columns:
         return np.cumsum(rows["wall_power"].to_numpy() * dt)
-    return np.zeros(len(rows))
+    power = np.zeros(len(rows))
+    for row in p.work_rows:
+        power -= row.sign * rows[row.name].to_numpy() * _velocity(p, row, rows)
+    return np.cumsum(power * dt)
 
 
-def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
-    """Velocity [m/s] of the plate along z in the interval that ends with each row."""
+def _velocity(p: ScenePlan, row: NamedRow, rows: pd.DataFrame) -> np.ndarray:
+    """Velocity [m/s] of a row's wall along its axis, or its turn [rad/s], in the interval that ends with each row."""
+    if row.torque:
+        (turn,) = p.rotations(row.wall)
+        return np.full(len(rows), turn.rate * turn.unit_axis[row.axis])
     phase = np.searchsorted([phase.end for phase in p.phases[:-1]], rows["step"])
-    speeds: np.ndarray = np.array([phase.plate for phase in p.phases])[phase]
+    speeds: np.ndarray = np.array([phase.velocity(row.wall)[row.axis] for phase in p.phases])[phase]
     return speeds
 
 
@@ -81,7 +83,7 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
     """
     spheres, contacts = tables["particles"], tables["contacts"]
     steps = np.sort(spheres["step"].unique())
-    gravity = spheres["mass"] * p.case.scene.gravity * spheres["z"]
+    gravity = spheres["mass"] * p.scene.gravity * spheres["z"]
     by_step = spheres.assign(kinetic=kinetic(spheres), rotation=rotation(spheres), gravity=gravity)
     sums = by_step.groupby("step")[["kinetic", "rotation", "gravity"]].sum()
     table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
@@ -153,11 +155,11 @@ def _below(key: str, value: float, limit: float) -> Row:
     return _row(key, value, limit, 0.0, passed=value <= limit) | {"error": max(0.0, excess)}
 
 
-def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
-    """(mean floor load over the last fifth of the run, weight of the spheres) [N]."""
+def floor_load(case: SceneCase, check: FloorLoad, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
+    """(mean load over the last fifth of the run, weight of the spheres) [N]."""
     rows, mass = tables["rows"], last_frame(tables["particles"])["mass"].sum()
     tail = rows[rows["step"] > 0.8 * rows["step"].max()]
-    return float(tail["floor_load"].mean()), float(mass * case.scene.gravity)
+    return float(tail[check.row].mean()), float(mass * case.parts.gravity)
 
 
 def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
@@ -171,20 +173,20 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     sums = whole.assign(height=whole["mass"] * whole["z"], kinetic=kinetic(whole) + rotation(whole)).groupby("step")
     total = whole["mass"].sum() / sums.ngroups
     place = sums["height"].sum().to_numpy() / total
-    fall = place[0] + sums["kinetic"].sum().iloc[0] / (total * case.scene.gravity) - place.min()
+    fall = place[0] + sums["kinetic"].sum().iloc[0] / (total * case.parts.gravity) - place.min()
     names = {p.material for p in case.parts.filled}
-    v, radius = float(np.sqrt(2 * case.scene.gravity * fall)), case.parts.leading.radii()[0]
+    v, radius = float(np.sqrt(2 * case.parts.gravity * fall)), case.parts.leading.radii()[0]
     pairs = [(a, b) for a in names for b in names | {*case.parts.wall_materials}]
     e_n = max(float(predict(wall_impact(case, a, radius, b, v)).e_n[-1]) for a, b in pairs)
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
 
-def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
-    """Secant stiffness [N/m] of (loading, unloading) between half the largest plate force and that force."""
+def stiffness(p: ScenePlan, press: Press, rows: pd.DataFrame) -> tuple[float, float]:
+    """Secant stiffness [N/m] of (loading, unloading) between half the largest force and that force."""
     turn = p.phases[-2].end
     load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
-    way_up, up = load["plate_z"].to_numpy()[::-1], load["plate_force"].to_numpy()[::-1]
-    way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
+    way_up, up = load[press.position].to_numpy()[::-1], load[press.force].to_numpy()[::-1]
+    way_down, down = unload[press.position].to_numpy(), unload[press.force].to_numpy()
     bottom, top = way_up[0], up[0]
     below = int(np.argmax(up < 0.5 * top)), int(np.argmax(down < 0.5 * top))
     forces = top - up[below[0]], top - down[below[1]]
@@ -193,11 +195,12 @@ def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     return load, unload
 
 
-def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
-    """Work [J] that the plate (put in, got back): its force, a mean over each interval, times the displacement."""
-    speed = plate_velocity(p, rows)
+def recovered(p: ScenePlan, press: Press, rows: pd.DataFrame) -> tuple[float, float]:
+    """Work [J] that a wall (put in, got back): its force, a mean over each interval, times the displacement."""
+    row = next(row for row in p.scene.row if row.name == press.force)
+    speed = row.sign * _velocity(p, row, rows)
     seconds = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
-    work = rows["plate_force"].to_numpy() * np.abs(speed) * seconds
+    work = rows[press.force].to_numpy() * np.abs(speed) * seconds
     return float(work[speed < 0].sum()), float(work[speed > 0].sum())
 
 
@@ -212,20 +215,20 @@ class Discharge:
     counted: int
 
 
-def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float, float] = (0.2, 0.6)) -> Discharge:
+def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[float, float] = (0.2, 0.6)) -> Discharge:
     """The slope of the mass below the outlet against time, while it is between these parts of the filling.
 
     NaN where fewer than two frames lie between them. The bulk density is that from 0.2 to 0.7 of the bed's height.
     """
     steps = np.sort(spheres["step"].unique())
     bed = spheres[spheres["step"] == steps[steps <= p.phases[0].end].max()]
-    below = spheres[spheres["z"] < p.scene.gates[0].at].groupby("step")["mass"]
+    below = spheres[spheres["z"] < flow.at].groupby("step")["mass"]
     out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
     during = (out > part[0] * bed["mass"].sum()) & (out < part[1] * bed["mass"].sum())
     count = below.count().reindex(steps, fill_value=0).to_numpy()[during]
     top = np.quantile(bed["z"], 0.95)
     inside = bed[(bed["z"] > 0.2 * top) & (bed["z"] < 0.7 * top)]
-    bulk = inside["mass"].sum() / (np.pi / 4 * s.bin_diameter**2 * 0.5 * top)
+    bulk = inside["mass"].sum() / (np.pi / 4 * flow.bin**2 * 0.5 * top)
     diameter = 2 * float(bed["radius"].mean())
     if count.size < 2:
         return Discharge(np.nan, float(bulk), diameter, 0)
@@ -241,10 +244,10 @@ def beverloo(discharge: Discharge, outlet: float, gravity: float) -> float:
     return float(0.58 * discharge.bulk * np.sqrt(gravity) * (outlet - 1.4 * discharge.diameter) ** 2.5)
 
 
-def single_rebound(case: SceneCase, s: Peening) -> float:
-    """Speed [m/s] at which one shot leaves a flat target, by theory alone."""
-    shot, target = s.particles[0], s.bed[0].material if s.bed else s.walls
-    return float(predict(wall_impact(case, shot.material, shot.radii()[0], target, s.speed)).e_n[-1] * s.speed)
+def single_rebound(case: SceneCase, s: ReboundSpeed) -> float:
+    """Speed [m/s] at which one sphere leaves a flat target, by theory alone."""
+    shot = next(fill for fill in case.parts.random_fills if fill.name == s.fill).particles[0]
+    return float(predict(wall_impact(case, shot.material, shot.radii()[0], s.target, s.speed)).e_n[-1] * s.speed)
 
 
 def rebounds(spheres: pd.DataFrame, speed: float, expected: float) -> tuple[float, int]:
@@ -260,16 +263,10 @@ def rebounds(spheres: pd.DataFrame, speed: float, expected: float) -> tuple[floa
     return float(speeds[np.argmax(np.abs(speeds - expected))]), speeds.size
 
 
-def _of_settle(p: ScenePlan, s: Settle, tables: dict[str, pd.DataFrame]) -> list[Row]:
-    contact, rows = p.case.contact, []
+def _has_smooth_walls(p: ScenePlan) -> bool:
+    contact = p.case.contact
     smooth = contact.wall_friction == 0.0 or (contact.friction == 0.0 and contact.wall_friction is None)
-    smooth = smooth and not any("wall" in pair.between for pair in contact.pairs) and not contact.cohesion
-    if "floor_load" in tables["rows"] and "particles" in tables and smooth:
-        load, weight = floor_load(p.case, tables)
-        rows.append(_row("floor_load", load, weight, 0.02))
-    if not s.rate and s.gravity and p.output.particles >= MANY and not p.model.adheres:  # what sticks swings back
-        rows.append(_below("rebound_of_the_bed", *bed_rebound(p.case, tables["particles"])))
-    return rows
+    return smooth and not any("wall" in pair.between for pair in contact.pairs) and not contact.cohesion
 
 
 def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
@@ -279,10 +276,10 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     """
     there = {w.name for w in p.scene.planes} | {*p.scene.meshes, *p.phases[-1].gates}
     known = there <= {*p.loads} and not any(s.frozen for s in p.scene.table)
-    if not (there and known) or p.scene.open_boundary or "particles" not in tables or not p.case.scene.gravity:
+    if not (there and known) or p.scene.open_boundary or "particles" not in tables or not p.scene.gravity:
         return []
     last = last_frame(tables["particles"])
-    weight = last["mass"] * p.case.scene.gravity
+    weight = last["mass"] * p.scene.gravity
     if last.empty or kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
         return []
     row = tables["rows"].iloc[-1]
@@ -300,22 +297,24 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
         rows.append(_row("void", 1.0, 0.0, 0.0))
     elif not p.scene.open_boundary:
         rows.append(_row("spheres_in_room", float(tables["rows"]["particles"].iloc[-1]), float(p.count), 0.0))
-    match p.case.scene:
-        case Settle() as s:
-            rows += _of_settle(p, s, tables)
-        case Hopper() as s if many:
-            flow = discharge(p, s, tables["particles"])
-            rows.append(_row("mass_flow", flow.rate, beverloo(flow, s.outlet, s.gravity), 0.2))
-        case Peening() as s if many and not s.bed:
-            expected = single_rebound(p.case, s)
-            speed, count = rebounds(tables["particles"], s.speed, expected)
-            rows.append(_row("rebound_speed", speed, expected, 1e-3, count=count))
-        case Compaction():
-            put_in, back = recovered(p, tables["rows"])
-            rows.append(_below("loading_stiffness", *stiffness(p, tables["rows"])))
-            rows.append(_below("recovered_work", back, put_in))
-        case Parts():
-            rows += _of_parts(p, tables)
+    for check in p.scene.check:
+        match check:
+            case FloorLoad() if "particles" in tables and _has_smooth_walls(p):
+                rows.append(_row("floor_load", *floor_load(p.case, check, tables), 0.02))
+            case BedRebound() if many and not p.model.adheres:  # what sticks swings back
+                rows.append(_below("rebound_of_the_bed", *bed_rebound(p.case, tables["particles"])))
+            case MassFlow() if many:
+                flow = discharge(p, check, tables["particles"])
+                rows.append(_row("mass_flow", flow.rate, beverloo(flow, check.outlet, p.scene.gravity), 0.2))
+            case ReboundSpeed() if many and len(p.phases) == 1:
+                expected = single_rebound(p.case, check)
+                speed, count = rebounds(tables["particles"], check.speed, expected)
+                rows.append(_row("rebound_speed", speed, expected, 1e-3, count=count))
+            case Press():
+                put_in, back = recovered(p, check, tables["rows"])
+                rows.append(_below("loading_stiffness", *stiffness(p, check, tables["rows"])))
+                rows.append(_below("recovered_work", back, put_in))
+    rows += _of_parts(p, tables)
     if "energy_balance" in tables and not p.model.loses_energy:
         rows.append(_row("energy_residual", closure(tables["energy_balance"]), 0.0, 0.01))
     return pd.DataFrame(rows, columns=COLUMNS)

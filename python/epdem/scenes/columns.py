@@ -12,7 +12,6 @@ import numpy.typing as npt
 import pandas as pd
 
 from ..base.tables import Quantity
-from ..case.kinds import Compaction
 from ..case.scene import SceneCase
 from ..errors import EngineError
 from ..laws.library import Law
@@ -22,6 +21,7 @@ from ..theory.numerics import gauss
 from .model import pair_law
 from .plan import ScenePlan
 
+Array = npt.NDArray[np.float64]
 COLUMNS = {
     "step": Quantity("", "number of the time step"),
     "time": Quantity("s", "time since the begin of the run"),
@@ -32,12 +32,7 @@ COLUMNS = {
         "", "largest strain w a/R* of all contacts since the start; a: contact radius, w: share of the weaker body"
     ),
     "largest_overlap_ratio": Quantity("", "largest w delta/R* of all contacts since the start; delta: overlap"),
-    "floor_load": Quantity("N", "force of the spheres on the floor, mean over a row"),
-    "torque": Quantity("N m", "torque of the spheres on the drum, mean over a row"),
     "wall_power": Quantity("W", "power of all moving walls, mean over a row"),
-    "plate_force": Quantity("N", "force of the spheres on the plate, mean over a row"),
-    "plate_z": Quantity("m", "height of the plate in the middle of a row"),
-    "stress": Quantity("Pa", "plate_force over the area of the box"),
     # frames of spheres
     "id": Quantity("", "number of the sphere"),
     "type": Quantity("", "number of the material"),
@@ -123,9 +118,9 @@ def units(table: pd.DataFrame) -> dict[str, str]:
 
 def columns_of_rows(p: ScenePlan) -> set[str]:
     """The names of the columns that the rows of a scene have."""
-    plate = ("plate_z", "stress") if "plate_force" in p.row_columns else ()
     loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
-    return {"step", "time", "particles", "kinetic_energy", *STRAINS, *p.row_columns, *plate, *loads}
+    named = {row.name for row in p.scene.row}
+    return {"step", "time", "particles", "kinetic_energy", *STRAINS, *p.row_columns, *named, *loads}
 
 
 def columns_of_frames(p: ScenePlan) -> list[str]:
@@ -161,24 +156,32 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
     table.insert(1, "time", p.time_at(table["step"].to_numpy()))
     strains = [name for name in STRAINS if name in table]
     table[strains] = table[strains].clip(lower=0.0).cummax()  # no sphere is there yet, or the one that held it left
-    if isinstance(p.case.scene, Compaction):
-        middle = p.time_at((table["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
-        table["plate_z"] = plate_height(p, middle)
-        table["stress"] = table["plate_force"] / (p.case.scene.box[0] * p.case.scene.box[1])
     return table.reset_index(drop=True)
 
 
-def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
-    """Height [m] of the plate at times [s], each the middle of the interval that a force is the mean of."""
-    height = np.full(len(time), p.triangles["plate"][0, 0, 2])
+def named_rows(p: ScenePlan, table: pd.DataFrame) -> pd.DataFrame:
+    """The rows with the columns that the scene names, in place of the forces from which alone they follow."""
+    middle = p.time_at((table["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
+    for row in p.scene.row:
+        if row.position:
+            table[row.name] = place(p, row.wall, row.axis, middle)
+        else:
+            table[row.name] = row.sign * table[f"{row.wall}_{row.quantity}_{'xyz'[row.axis]}"] / (row.area or 1.0)
+    table = table[[name for name in table if name in columns_of_rows(p)]]
+    table.attrs["units"] = {row.name: row.unit for row in p.scene.row}
+    return table
+
+
+def place(p: ScenePlan, wall: str, axis: int, time: Array) -> Array:
+    """Coordinate [m] of a wall along an axis at times [s], each the middle of the interval that a force is the mean
+    of."""
+    found = np.full(len(time), p.triangles[wall][0, 0, axis])
     begin = 0.0
     for phase, end in zip(p.phases, p.time_at(np.array([phase.end for phase in p.phases])), strict=True):
-        height += phase.plate * (np.clip(time, begin, end if phase is not p.phases[-1] else None) - begin)
+        found += phase.velocity(wall)[axis] * (np.clip(time, begin, end if phase is not p.phases[-1] else None) - begin)
         begin = end
-    return height
+    return found
 
-
-Array = npt.NDArray[np.float64]
 
 GROWTH = ["added_overlap", "screening"]  # that an engine gives with compaction
 NORMAL, FORCE = ([f"{name}_{axis}" for axis in "xyz"] for name in ("normal", "force"))  # force: that of the engine

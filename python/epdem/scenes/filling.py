@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..case.kinds import KindFill
 from ..case.parts import Fill, Parts, Region
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
@@ -17,7 +16,6 @@ from ..case.walls import Vector3
 from ..errors import CaseError
 
 MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
-PARTICLES = {"scene.count": "scene.particles", "scene.bed_count": "scene.bed"}  # by the key of the number
 LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of its fill
 
 
@@ -25,7 +23,8 @@ LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of it
 class Insertion:
     """`count` spheres of `particles` put into a region in a phase: at once, or `rate` per second every `period` [s].
 
-    key: of the number in the case. exact: `count` is the number of spheres beside those that are in the region before.
+    key, mixture: places of the number and of the particles in the case. exact: `count` is the number of spheres beside
+    those that are in the region before.
     """
 
     particles: list[Particles]
@@ -37,6 +36,7 @@ class Insertion:
     rate: float | None = None
     period: float = 0.0
     exact: bool = False
+    mixture: str = ""
 
 
 def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
@@ -140,20 +140,16 @@ def _random(case: SceneCase, fill: Insertion) -> list[Size]:
 def _insertion(case: SceneCase, scene: Parts, f: Fill, key: str, count: int) -> Insertion:
     vx, vy, vz = f.velocity
     phase = next(p for p in scene.phase if f.phase in (None, p.name))
+    mixture = scene.place(f"scene.fill.{f.name}.particles")
     if f.rate is None:
-        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz))
+        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), mixture=mixture)
     down, depth = -vz, f.region.z[1] - f.region.z[0]
     if not (down > 0 or scene.gravity):
         raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")
     period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
     if count / f.rate > phase.duration:
         raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
-    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period)
-
-
-def _key(f: Fill) -> str:
-    """The place of a fill in the case."""
-    return f.key if isinstance(f, KindFill) else f"scene.fill.{f.name}"
+    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period, mixture=mixture)
 
 
 def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
@@ -163,12 +159,12 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     """
     found: list[Insertion] = []
     for f in scene.random_fills:
-        key = _key(f)
+        key = scene.place(f"scene.fill.{f.name}")
         sizes = sorted((size for size in counted(case, f) if size.placed), key=lambda size: -size.radius)
         if not sizes:
             raise CaseError(f"{key}: not one sphere; give more, or smaller ones")
         all_sizes = _insertion(case, scene, f, key, sum(size.placed or 0 for size in sizes))
-        if f.rate is not None or (isinstance(f, KindFill) and len(sizes) == 1):
+        if f.rate is not None or (len(sizes) == 1 and not f.exact):
             found.append(all_sizes)
             continue
         found += [
@@ -181,16 +177,16 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
 def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size], float]]:
     """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
     that the mass is the mass of the placed spheres."""
-    of_case = {_key(f): f for f in case.parts.random_fills}
+    of_case = {case.parts.place(f"scene.fill.{f.name}"): f for f in case.parts.random_fills}
     for key, group in groupby(fills, key=lambda fill: fill.key):
         first = next(group)
         if first.exact:
             f = of_case[key]
             sizes = counted(case, f)
             mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
-            yield PARTICLES.get(key, f"{key}.particles"), sizes, mass
+            yield first.mixture, sizes, mass
         else:
-            yield PARTICLES.get(key, f"{key}.particles"), _random(case, first), 0.0
+            yield first.mixture, _random(case, first), 0.0
 
 
 def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:

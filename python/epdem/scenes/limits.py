@@ -256,8 +256,7 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
             volume = sum(mean_volume(case, f) * f.count for f in fills)
             volume += sum(4.0 / 3.0 * math.pi * s.radius**3 for s in scene.table if low <= s.place[axis] <= high)
             if area := _covered(scene, wall, (low, high), fills):
-                key = f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height"
-                key = "scene.height" if case.scene.kind == "compaction" else key
+                key = scene.place(f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height")
                 height = sign * (stop - place)
                 yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area)
 

@@ -20,7 +20,7 @@ RINGS = 12  # of the surface of a bed
 
 def refuse_measures(p: ScenePlan) -> None:
     """Raise CaseError for measures that the scene cannot give."""
-    s = p.case.scene
+    s = p.scene
     names, taken = [m.name for m in s.measure], columns_of_rows(p)
     for m in s.measure:
         place = f"scene.measure.{m.name}"
@@ -152,12 +152,12 @@ def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> Fl
 def with_loads(p: ScenePlan, rows: pd.DataFrame) -> pd.DataFrame:
     """The rows with a column for each force and torque: the mean over each row [N, N m]."""
     found = rows.copy()
-    loads = [m for m in p.case.scene.measure if isinstance(m, Load)]
+    loads = [m for m in p.scene.measure if isinstance(m, Load)]
     for m in loads:
         parts = [f"{m.wall}_{m.kind}_{axis}" for axis in "xyz" if m.component in (axis, "magnitude")]
         values = rows[[part for part in parts if part in rows]].to_numpy()
         found[m.name] = values[:, 0] if m.component != "magnitude" else np.linalg.norm(values, axis=1)
-    found.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in loads}
+    found.attrs["units"] = rows.attrs.get("units", {}) | {m.name: MEASURES[m.kind].unit for m in loads}
     return found
 
 
@@ -173,7 +173,7 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     steps = np.sort(spheres["step"].unique())
     frames = dict(tuple(spheres.groupby("step")))
     table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
-    for m in p.case.scene.measure:
+    for m in p.scene.measure:
         match m:
             case Amount():
                 chosen = [_chosen(p, m, frames[step])["mass"] for step in steps]
@@ -191,7 +191,7 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 table[m.name] = [_porosity(p, m, frames[step]) for step in steps]
             case Load() | Histogram():
                 pass
-    table.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in p.case.scene.measure if m.name in table}
+    table.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in p.scene.measure if m.name in table}
     return table
 
 
@@ -223,7 +223,7 @@ def values_of(p: ScenePlan, m: Histogram, tables: dict[str, pd.DataFrame]) -> Fl
 def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per bin: measure, low, high, number."""
     found = []
-    for m in p.case.scene.measure:
+    for m in p.scene.measure:
         if not isinstance(m, Histogram):
             continue
         number, edges = np.histogram(values_of(p, m, tables), m.bins)

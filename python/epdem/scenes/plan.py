@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 
 from ..case import walls as case_walls
-from ..case.kinds import Compaction, Drum, Preset
+from ..case.outputs import Row
 from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
-from ..case.walls import Limits, LinearMove, Move, RotateMove
+from ..case.walls import Limits, LinearMove, Move, RotateMove, Vector3
 from . import walls
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
@@ -62,11 +62,11 @@ class Phase:
     def moves(self) -> dict[str, Move]:
         return self.case.moves
 
-    @property
-    def plate(self) -> float:
-        """Velocity of the plate along z [m/s]."""
-        move = self.moves.get("plate")
-        return move.velocity[2] if isinstance(move, LinearMove) else 0.0
+    def velocity(self, wall: str) -> Vector3:
+        """The constant velocity of a wall [m/s]."""
+        move = self.moves.get(wall)
+        x, y, z = move.velocity if isinstance(move, LinearMove) else (0.0, 0.0, 0.0)
+        return x, y, z
 
 
 @dataclass(frozen=True)
@@ -212,17 +212,38 @@ class ScenePlan:
 
     @property
     def row_columns(self) -> tuple[str, ...]:
-        """The loads of walls of a kind, and the power of moving walls whose work no other column tells, in the rows."""
+        """The power of moving walls, in the rows if no other column tells their work."""
         moving = any(map(walls.surface_rotation, self.scene.meshes.values())) or any(p.moves for p in self.phases)
-        plate = isinstance(self.case.scene, Compaction)
-        torque = isinstance(self.case.scene, Drum) and (self.output.loads or self.output.energy)
-        there = {
-            "floor_load": self.output.loads and not self.loads and any(w.name == "floor" for w in self.scene.planes),
-            "plate_force": plate,
-            "torque": torque,
-            "wall_power": moving and self.output.energy and not (plate or torque),
-        }
-        return tuple(name for name, present in there.items() if present)
+        return ("wall_power",) if moving and self.output.energy and not self.work_rows else ()
+
+    @property
+    def measured_walls(self) -> tuple[str, ...]:
+        """The walls whose forces an engine writes: those of `loads` and of the rows that the scene names."""
+        named = {row.wall for row in self.scene.row if not row.position}
+        return tuple(w.name for w in self.scene.wall if w.name in {*self.loads, *named})
+
+    @property
+    def work_rows(self) -> tuple[Row, ...]:
+        """The rows that tell the work of all moving walls, one for each wall; empty: of a wall no row does."""
+        found = []
+        for name, mesh in self.scene.meshes.items():
+            turn = walls.surface_rotation(mesh)
+            moves = [phase.moves[name] for phase in self.phases if name in phase.moves]
+            ways = [move.velocity for move in moves if isinstance(move, LinearMove)]
+            kind, vectors = ("torque", [turn.axis]) if turn else ("force", ways)
+            if not (turn or moves):
+                continue
+            told = [
+                row
+                for row in self.scene.row
+                if (row.wall, row.quantity, row.area) == (name, kind, None)
+                and len(ways) == len(moves) * (not turn)
+                and all(k == row.axis or not x for vector in vectors for k, x in enumerate(vector))
+            ]
+            if not told:
+                return ()
+            found += told[:1]
+        return tuple(found)
 
     @property
     def stress_walls(self) -> tuple[str, ...]:
@@ -245,8 +266,8 @@ class ScenePlan:
     @property
     def summary(self) -> str:
         """One line for the head of a deck."""
-        s = self.case.scene
-        return f"{s.kind}: {self.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
+        steps = f"{self.steps} steps of {self.time_step:g} s"
+        return f"{self.case.kind}: {self.count} spheres, law {self.model.law}, {steps}"
 
 
 def _rows(output: Output) -> int:
@@ -291,11 +312,9 @@ def _phases(scene: Parts, rows: int, every: int, dt: float, given: float | None)
 
 
 def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
-    """The walls whose forces a scene of parts requests: for its output, for a condition, for a measure."""
-    if isinstance(scene, Preset):
-        return ()
+    """The walls whose forces a scene requests: for its output unless it names rows, for a condition, for a measure."""
     gates = {w.name for w in scene.gates}
-    loads = {w.name for w in scene.wall} - gates if case.output.loads else set()
+    loads = {w.name for w in scene.wall} - gates if case.output.loads and not scene.row else set()
     loads |= {p.condition.wall for p in scene.phase if p.condition and p.condition.wall}
     loads |= {m.wall for m in scene.measure if isinstance(m, Load)}
     return tuple(w.name for w in scene.wall if w.name in loads)
@@ -306,11 +325,10 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_faster_than_sound(case)
     contact_model, scene, out = model(case), case.parts, case.output
     triangles = walls.triangles(scene)
-    if not isinstance(scene, Preset):
-        refuse_positions(scene)
-        refuse_outside(scene, triangles)
-        walls.refuse_leaving(scene, triangles)
-        refuse_combinations(case, scene)
+    refuse_positions(scene)
+    refuse_outside(scene, triangles)
+    walls.refuse_leaving(scene, triangles)
+    refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)
     refuse_missing(case, filled)

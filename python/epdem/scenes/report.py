@@ -12,8 +12,8 @@ from rich.console import Console
 
 from ..base.files import claim
 from ..base.terminal import make_table, show_table, table
-from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
-from ..case.parts import MEASURES, Histogram, Load, Parts
+from ..case.outputs import MassFlow, Press, ReboundSpeed
+from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
@@ -43,7 +43,7 @@ def charts(outcome: SceneOutcome) -> list[Chart]:
 
 def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The measures against time."""
-    found = [m for m in p.case.scene.measure if not isinstance(m, Histogram)]
+    found = [m for m in p.scene.measure if not isinstance(m, Histogram)]
     curves = {m.name: curve(m, tables) for m in found}
     constant = {name: y[0] for name, (_, y) in curves.items() if np.unique(y).size == 1}
     shown = [m for m in found if m.name not in constant]
@@ -81,7 +81,7 @@ def _with_phases(p: ScenePlan, panel: Panel) -> Panel:
 def rows(outcome: SceneOutcome) -> list[Chart]:
     """Every column of the rows against time; measured loads, which the key figure has, and constant columns not."""
     table, known = outcome.results.tables["rows"], units(outcome.results.tables["rows"])
-    measured = {m.name for m in outcome.case.scene.measure}
+    measured = {m.name for m in outcome.plan.scene.measure}
     shown = [str(name) for name in table if name not in {"step", "time"} | measured]
     constant = {name: table[name].iloc[0] for name in shown if table[name].nunique() < 2}
     curves: dict[str, list[str]] = {}  # by the label of their panel: the three components of a load share one
@@ -102,7 +102,7 @@ def rows(outcome: SceneOutcome) -> list[Chart]:
 def histograms(outcome: SceneOutcome) -> list[Chart]:
     """One chart for each histogram that the scene measures."""
     title, drawn = outcome.case.case.title, []
-    for k, m in enumerate(m for m in outcome.case.scene.measure if isinstance(m, Histogram)):
+    for k, m in enumerate(m for m in outcome.plan.scene.measure if isinstance(m, Histogram)):
         bins = outcome.results.tables["histograms"]
         part = bins[bins["measure"] == m.name]
         edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
@@ -151,13 +151,13 @@ def bed(outcome: SceneOutcome) -> list[Picture]:
     return [Picture("The bed", alt, file=path)]
 
 
-def _hopper(p: ScenePlan, s: Hopper, tables: Tables) -> list[Panel]:
+def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Mass below the outlet against time, and the line of Beverloo from where a fifth has come out."""
     spheres = tables["particles"]
-    steps = np.sort(spheres["step"].unique())
-    below = spheres[spheres["z"] < p.scene.gates[0].at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
+    steps, (flow,) = np.sort(spheres["step"].unique()), [x for x in p.scene.check if isinstance(x, MassFlow)]
+    below = spheres[spheres["z"] < flow.at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
     time, out = p.time_at(steps), below.to_numpy()
-    rate = checks.beverloo(checks.discharge(p, s, spheres), s.outlet, s.gravity)
+    rate = checks.beverloo(checks.discharge(p, flow, spheres), flow.outlet, p.scene.gravity)
     total = float(spheres[spheres["step"] == steps[-1]]["mass"].sum())
     begin = int(np.argmax(out > 0.2 * total))
     ends = time[begin] + np.array([0.0, 0.4 * total / rate])
@@ -165,28 +165,34 @@ def _hopper(p: ScenePlan, s: Hopper, tables: Tables) -> list[Panel]:
     return [Panel(TIME, Axis("mass below the outlet", "kg"), [Series("scene", time, out, 0), line])]
 
 
-def _compaction(p: ScenePlan, s: Compaction, tables: Tables) -> list[Panel]:
-    rows = tables["rows"]
-    way, force = (s.box[2] - rows["plate_z"]).to_numpy(), rows["plate_force"].to_numpy()
+def _press(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """Force over displacement, loading and unloading."""
+    rows, (press,) = tables["rows"], [x for x in p.scene.check if isinstance(x, Press)]
+    row = next(row for row in p.scene.row if row.name == press.position)
+    begin = p.triangles[row.wall][0, 0, row.axis]
+    way, force = (begin - rows[press.position]).abs().to_numpy(), rows[press.force].to_numpy()
     loading = (rows["step"] <= p.phases[-2].end).to_numpy()
     parts = (("loading", loading), ("unloading", ~loading))
     series = [Series(name, way[part], force[part], colour) for colour, (name, part) in enumerate(parts)]
-    return [Panel(Axis("displacement of the plate", "m"), Axis("plate_force", "N"), series)]
+    return [Panel(Axis(f"displacement of the {row.wall}", "m"), Axis(press.force, "N"), series)]
 
 
-def _drum(p: ScenePlan, s: Drum, tables: Tables) -> list[Panel]:
-    """Torque on the drum against time; without it the bed's centre of mass, which its turn carries up the wall."""
-    rows = tables["rows"]
-    if "torque" in rows:
-        return [Panel(TIME, Axis("torque", "N m"), [Series("", rows["time"].to_numpy(), rows["torque"].to_numpy(), 0)])]
+def _column(p: ScenePlan, tables: Tables, name: str) -> list[Panel]:
+    """A column of the rows against time."""
+    rows, unit = tables["rows"], next(row.unit for row in p.scene.row if row.name == name)
+    return [Panel(TIME, Axis(name, unit), [Series("", rows["time"].to_numpy(), rows[name].to_numpy(), 0)])]
+
+
+def _center_of_mass(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """The bed's centre of mass across, which a turn carries up the wall."""
     sums = tables["particles"].eval("mx = mass * x").groupby("step")[["mx", "mass"]].sum()
     place = (sums["mx"] / sums["mass"]).to_numpy()
     return [Panel(TIME, Axis("x of the centre of mass", "m"), [Series("", p.time_at(sums.index.to_numpy()), place, 0)])]
 
 
-def _peening(p: ScenePlan, s: Peening, tables: Tables) -> list[Panel]:
-    """Speeds of the shot upwards after its impact, and e_n v of theory for one impact on the target."""
-    spheres = tables["particles"]
+def _rebound_speed(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """Speeds of the spheres upwards after their impact, and e_n v of theory for one impact on the target."""
+    spheres, (s,) = tables["particles"], [x for x in p.scene.check if isinstance(x, ReboundSpeed)]
     up = spheres[spheres["vz"] > 1e-3 * s.speed].groupby("id")["vz"].max().to_numpy()
     number, edges = np.histogram(up, BINS)
     expected = checks.single_rebound(p.case, s)
@@ -197,7 +203,8 @@ def _peening(p: ScenePlan, s: Peening, tables: Tables) -> list[Panel]:
     return [Panel(Axis("rebound speed", "m/s"), Axis("number"), series)]
 
 
-def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
+def _bed(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """Height and kinetic energy against time."""
     rows, heights = tables["rows"], tables["particles"].groupby("step")["z"].quantile(0.95)
     moving = rows[rows["kinetic_energy"] > 0]
     energy = Series("", moving["time"].to_numpy(), moving["kinetic_energy"].to_numpy(), 1)
@@ -208,7 +215,7 @@ def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
     ]
 
 
-def _parts(p: ScenePlan, s: Parts, tables: Tables) -> list[Panel]:
+def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Force over displacement of each wall that moves only with constant velocities and whose force is in the rows:
     a curve for each of its phases, both along the first of its motions."""
     rows, phases = tables["rows"], p.phase_table
@@ -235,22 +242,26 @@ def _parts(p: ScenePlan, s: Parts, tables: Tables) -> list[Panel]:
     return found
 
 
-PANELS: dict[type, Callable[..., list[Panel]]] = {
-    Hopper: _hopper,
-    Compaction: _compaction,
-    Drum: _drum,
-    Peening: _peening,
-    Settle: _settle,
-    Parts: _parts,
+OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
+    "mass_flow": _mass_flow,
+    "rebound_speed": _rebound_speed,
+    "bed": _bed,
+    "center_of_mass": _center_of_mass,
 }
 
 
 def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
     """The panels of the key figure; none where the tables lack the data."""
-    s = p.case.scene
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
-    drawn = frames or isinstance(s, Compaction | Parts) or "torque" in tables["rows"]
-    return PANELS[type(s)](p, s, tables) if drawn and type(s) in PANELS else []
+    found: list[Panel] = []
+    for name in p.scene.key_figure:
+        if name == "press":
+            found += _press(p, tables)
+        elif name not in OF_FRAMES:
+            found += _column(p, tables, name)
+        elif frames:
+            found += OF_FRAMES[name](p, tables)
+    return found if p.scene.key_figure else _moving_walls(p, tables)
 
 
 def key(p: ScenePlan, tables: Tables) -> list[Chart]:
@@ -263,14 +274,14 @@ def key(p: ScenePlan, tables: Tables) -> list[Chart]:
 def as_json(outcome: SceneOutcome) -> str:
     """The document of `epdem run --json` for a scene: of the measures the last frame, or row of a force or torque."""
     tables, measured = outcome.results.tables, list[dict[str, object]]()
-    if outcome.case.scene.measure:
+    if outcome.plan.scene.measure:
         row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))
-        loads = [m for m in outcome.case.scene.measure if isinstance(m, Load)]
+        loads = [m for m in outcome.plan.scene.measure if isinstance(m, Load)]
         measured = [row[0] | {m.name: float(curve(m, tables)[1][-1]) for m in loads}]
     return json.dumps(
         {
             "case": outcome.case.name,
-            "kind": outcome.case.scene.kind,
+            "kind": outcome.case.kind,
             "passed": outcome.passed,
             "steps": outcome.plan.steps,
             "time_step": outcome.plan.time_step,
@@ -308,11 +319,11 @@ def show(outcome: SceneOutcome, console: Console) -> None:
 
 def _show_measures(outcome: SceneOutcome, console: Console) -> None:
     tables = outcome.results.tables
-    if not outcome.case.scene.measure:
+    if not outcome.plan.scene.measure:
         return
     heads = ("measure", "kind", "time [s]", "value", "smallest", "largest", "unit")
     shown = table("measures", heads, left=("measure", "kind"))
-    for m in outcome.case.scene.measure:
+    for m in outcome.plan.scene.measure:
         if isinstance(m, Histogram):
             values = values_of(outcome.plan, m, tables)
             kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan

@@ -190,7 +190,7 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
             )
         tables["energy_balance"] = checks.energy_balance(p, tables)
     tables["checks"] = checks.checks(p, tables)
-    if p.case.scene.measure:
+    if p.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])
         tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
     return tables

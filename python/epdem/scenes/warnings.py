@@ -6,7 +6,6 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.kinds import Preset
 from ..case.parts import Region
 from ..case.walls import Room
 from ..errors import CaseError
@@ -144,7 +143,7 @@ def _walls(p: ScenePlan) -> list[str]:
     moved, found = set[str](), {}
     table = [(f"sphere {n} of scene.fill and scene.body", s, p.phases[0].name) for n, s in enumerate(p.scene.table, 1)]
     table += [(f"scene.body.{b.name}", b.sphere, b.phase or "") for b in p.scene.later]
-    for phase in () if isinstance(p.scene, Preset) else p.phases:
+    for phase in p.phases:
         gates = [w for w in p.scene.gates if w.name in phase.gates]
         walls = {w.name: sheet(w, p.box) for w in (*p.scene.planes, *gates)}
         walls |= {name: triangles for name, triangles in p.triangles.items() if name not in moved}

@@ -295,7 +295,7 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
     failed = ", ".join(checks["check"][~checks["passed"].astype(bool)])
     about = outcome.results.attributes
     said = [
-        f"A scene of kind {outcome.case.scene.kind} with law {p.model.law} in {about['engine']} (MPI ranks: "
+        f"A scene of kind {outcome.case.kind} with law {p.model.law} in {about['engine']} (MPI ranks: "
         f"{about['ranks']}): {p.steps} steps of {p.time_step:.4g} s took {float(str(about['seconds'])):.3g} s.",
         f"At the end, at {last['time']:.4g} s, {int(last['particles'])} spheres are in the room and their kinetic "
         f"energy is {last['kinetic_energy']:.4g} J.",
@@ -310,7 +310,7 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
 
 def _scene_facts(outcome: SceneOutcome) -> Facts:
     p = outcome.plan
-    facts = {"kind": outcome.case.scene.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
+    facts = {"kind": outcome.case.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
     facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}
     phases = [f"{x.name} up to step {x.end}" + f" (until {x.reached})" * bool(x.reached) for x in p.phases]
     return Facts("The scene", facts | {"phases": ", ".join(phases)})

@@ -149,15 +149,17 @@ def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
 
 def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
     from ..case import scene as scenes
+    from ..case.walls import LinearMove
 
-    scene, fall = data.get("scene", {}), factor**FORCE_POWER
-    found = []
-    if scene.get("kind") == "compaction" or any("velocity" in m for p in _phases(data) for m in p.get("move", [])):
+    if not scenes.is_scene(data):
+        return []
+    scene, fall, found = scenes.parse(data, path).parts, factor**FORCE_POWER, []
+    if any(isinstance(move, LinearMove) for phase in scene.phase for move in phase.move):
         found.append(
             "a wall that moves with a given velocity compresses the same way: its forces and stresses scale with the "
             "modulus, not with the real material"
         )
-    if scenes.is_scene(data) and scenes.parse(data, path).scene.gravity:
+    if scene.gravity:
         found.append(
             f"weight is kept, and the force of a contact at a speed falls by a factor of {fall:.3g} "
             f"(k^{FORCE_POWER:g}): overlaps and dents grow by more under static loads than in impacts; "

@@ -17,10 +17,8 @@ from .scene_deck import contact_walls
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The thermo rows. LAMMPS's fixes have the force on the spheres, and torques about the origin of coordinates."""
-    found = log.scene_rows(p, out, on_spheres=p.loads)
-    opposite = [name for name in ("plate_force", "stress", "torque") if name in found]
-    found[opposite] = -found[opposite]
-    for name in (n for n in p.loads if n in p.scene.meshes):
+    found = log.scene_rows(p, out, on_spheres=p.measured_walls)
+    for name in (n for n in p.measured_walls if n in p.scene.meshes):
         force = found[[f"{name}_{load}" for load in columns.LOADS[:3]]].to_numpy()
         found[[f"{name}_{load}" for load in columns.LOADS[3:]]] -= np.cross(torque_origin(p, name), force)
     return found
@@ -54,7 +52,7 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Co
     across = pairs["added_overlap"] if p.model.compaction else 0.0
     found = [pairs[(pairs["overlap"] + across > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
     for name in contact_walls(p):
-        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", *values, *columns.NORMAL], without)
+        table = _frames(p, folder, f"contacts_{wall_id(name)}", p.contacts, ["i", *values, *columns.NORMAL], without)
         found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")

@@ -56,14 +56,14 @@ def contact(p: ScenePlan, name: str) -> str:
 def plane(p: ScenePlan, w: PlaneWall) -> DeckWall:
     """A plane, which acts on both sides."""
     at = number(w.at)
-    return DeckWall(wall_id(p, w.name), (), f"wall/ep {w.axis}plane {at} {at}", contact(p, w.name))
+    return DeckWall(wall_id(w.name), (), f"wall/ep {w.axis}plane {at} {at}", contact(p, w.name))
 
 
 def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
     """The walls that are no planes, as regions. Raises CaseError for what no region of LAMMPS is."""
     found = []
     for name, mesh in p.scene.meshes.items():
-        id, motion = wall_id(p, name), _motion_words(p, name)
+        id, motion = wall_id(name), _motion_words(p, name)
         shapes = list(_shapes(p, mesh))
         ends = " ".join(filter(None, [motion, "units box"]))
         if len(shapes) == 1:
@@ -174,7 +174,7 @@ def _changing(p: ScenePlan, name: str) -> list[str]:
 
 
 def _motion_words(p: ScenePlan, name: str) -> str:
-    keys, id, found = _changing(p, name), wall_id(p, name), []
+    keys, id, found = _changing(p, name), wall_id(name), []
     if {*keys} & {*"xyz"}:
         found.append("move " + " ".join(f"v_{id}_{axis}" if axis in keys else "NULL" for axis in "xyz"))
     if "turn" in keys:
@@ -196,7 +196,7 @@ def motions(p: ScenePlan, before: Phase | None, phase: Phase | Deck) -> list[str
     """Commands that set the walls of triangles in motion at the begin of a phase, or stop them."""
     found = []
     for name in p.scene.meshes:
-        keys, id, rates = _changing(p, name), wall_id(p, name), _rates(p, name, phase)
+        keys, id, rates = _changing(p, name), wall_id(name), _rates(p, name, phase)
         move, last = phase.moves.get(name), before.moves.get(name) if before else None
         if not keys or (before and move == last):
             continue
@@ -218,7 +218,7 @@ def motions(p: ScenePlan, before: Phase | None, phase: Phase | Deck) -> list[str
 def plate_place(p: ScenePlan, bed: PressedBed) -> str:
     """Formula of the place of a plate that presses a bed."""
     (begin,) = {w.center[bed.axis] for w in p.scene.wall if isinstance(w, PlateWall) and w.name == bed.wall}
-    return f"(v_{wall_id(p, bed.wall)}_{'xyz'[bed.axis]}+{number(begin)})"
+    return f"(v_{wall_id(bed.wall)}_{'xyz'[bed.axis]}+{number(begin)})"
 
 
 def _servo(id: str, move: PressMove) -> Iterator[str]:

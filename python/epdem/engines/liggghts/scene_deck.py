@@ -122,14 +122,13 @@ def deck(p: ScenePlan) -> decks.Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
     _refuse_skin(p)
-    m, s = p.model, p.case.scene
+    m = p.model
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut, phases = p.case.numerics.processors, parts(p)
     return decks.Deck(
         p,
         title=p.case.case.title,
         source=p.case.case.source,
-        kind=s.kind,
         hard=max(moduli) > HARD,
         soft=min(moduli) < SOFT,
         boundary="p p f" if p.scene.periodic else "f f f",
@@ -146,15 +145,15 @@ def deck(p: ScenePlan) -> decks.Deck:
         wall_type=m.wall_types[""],
         planes=planes(p),
         meshes=surfaces(p),
-        loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
+        loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
         table=p.scene.table,
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
-        gravity=s.gravity,
+        gravity=p.scene.gravity,
         insertions=insertions(p),
         phases=phases,
         open=p.ends_early or any(phase.vibrations for phase in phases),
         samples=p.every // p.sampling,
-        stress_walls=tuple((name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in p.stress_walls),
+        stress_walls=tuple((name, wall_id(name), bool(p.scene.meshes[name].wear)) for name in p.stress_walls),
         spins=m.spins,
         has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
         work_words=[WORKS[name] for name in p.works],

@@ -109,13 +109,12 @@ def _words(*vectors: Sequence[float]) -> str:
 
 def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> decks.Deck:
     """A plane of the scene. force: LIGGGHTS stores the force of each sphere on it."""
-    return decks.Deck(w, id=wall_id(p, w.name), type=p.wall_types[w.name], force=force)
+    return decks.Deck(w, id=wall_id(w.name), type=p.wall_types[w.name], force=force)
 
 
 def planes(p: ScenePlan) -> tuple[decks.Deck, ...]:
     """The planes that are always there."""
-    stored = {"floor"} if "floor_load" in p.row_columns else {*p.loads}
-    return tuple(plane(p, w, force=w.name in stored or bool(p.contacts)) for w in p.scene.planes)
+    return tuple(plane(p, w, force=w.name in p.measured_walls or bool(p.contacts)) for w in p.scene.planes)
 
 
 def _press(p: ScenePlan, name: str) -> PressMove | None:
@@ -132,12 +131,12 @@ def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
     style: with sums of forces, driven by one. keywords: what the surface does. pressed_later: the force that drives the
     wall acts in later phases only.
     """
-    force = {*p.row_columns} - {"floor_load"}
     pressed = {bed.wall for bed in p.pressed}
     found = []
     for name, mesh in p.scene.meshes.items():
         rotation, words = surface_rotation(mesh), ""
-        style = "/stress" if force or name in p.loads or name in pressed or mesh.stress or mesh.wear else ""
+        measured = p.row_columns or name in p.measured_walls or name in pressed
+        style = "/stress" if measured or mesh.stress or mesh.wear else ""
         origin = torque_origin(p, name)
         if rotation is not None:  # LIGGGHTS takes the words in this order only
             axis, omega = " ".join(f"{x:g}" for x in rotation.axis), decks.number(rotation.rate)
@@ -154,14 +153,13 @@ def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
             words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
-        values = {"id": wall_id(p, name), "file": f"{name}.stl", "type": p.wall_types[name]}
+        values = {"id": wall_id(name), "file": f"{name}.stl", "type": p.wall_types[name]}
         found.append(decks.Deck(mesh, **values, style=style, keywords=words, pressed_later=waits))
     return tuple(found)
 
 
 def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
-    wall = wall_id(p, name)
-    fix = "press" if name == "plate" else f"move_{name}"
+    wall = wall_id(name)
     match move:
         case LinearMove():
             words = f"linear {_words(move.velocity)}"
@@ -173,13 +171,13 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
             words = f"wiggle amplitude {_words(move.amplitude)} period {decks.number(2 * math.pi / move.omega)}"
         case PressMove():
             return f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
-    return f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}"
+    return f"fix move_{name} all move/mesh mesh {wall} {words}", f"unfix move_{name}"
 
 
 def _place(p: ScenePlan, bed: PressedBed) -> str:
     k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
     reference = begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]  # LIGGGHTS moves it with the wall
-    return f"(f_{wall_id(p, bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
+    return f"(f_{wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
 def _phase_particle(p: ScenePlan, b: Body) -> decks.Deck:
@@ -214,7 +212,7 @@ def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
             resume_gates=[gates[name] for name in phase.gates],
             resume_commands=[begin for begin, _ in motions.values()],
             end_commands=[
-                *(f"unfix {wall_id(p, name)}" for name in phase.removed),
+                *(f"unfix {wall_id(name)}" for name in phase.removed),
                 *(end for name, (_, end) in motions.items() if after and not _goes_on(name, phase, after)),
             ],
             particles=[_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name],
@@ -270,7 +268,7 @@ def power(p: ScenePlan, phase: decks.Deck) -> str:
     """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
     terms = []
     for name, mesh in p.scene.meshes.items():
-        id, move = wall_id(p, name), phase.moves.get(name)
+        id, move = wall_id(name), phase.moves.get(name)
         for rotation in (surface_rotation(mesh), move):
             if isinstance(rotation, RotateMove):
                 terms += _times(id, 4, [rotation.rate * x for x in rotation.unit_axis])

@@ -124,7 +124,7 @@ def deck(p: ScenePlan) -> decks.Deck:
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
-    every_step = {*p.row_columns} - {"floor_load"} or any(mesh.wear for mesh in p.scene.meshes.values())
+    every_step = p.row_columns or p.work_rows or any(mesh.wear for mesh in p.scene.meshes.values())
     return decks.Deck(
         p,
         title=p.case.case.title,
@@ -142,12 +142,12 @@ def deck(p: ScenePlan) -> decks.Deck:
         placed=_placed(p),
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
-        fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
+        fall=-p.scene.gravity if p.scene.gravity else 0.0,
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
         phases=every_phase,
         fills=any(phase.fills for phase in every_phase),
         motions=[motion for phase in every_phase for motion in phase.motions],
-        sampling=1 if every_step else p.sampling if p.output.loads or p.loads else p.every,
+        sampling=1 if every_step else p.sampling if p.measured_walls else p.every,
         spins=m.spins,
         works=[WORKS[name] for name in p.works if name in WORKS],
         loads=loads(p),

@@ -21,7 +21,6 @@ EDGES = (
 )
 
 
-OF_KINDS = {"floor": "floor_load", "plate": "plate_force"}  # column of the force on a wall of a kind
 LEGS = (6.0, 6.0, 1.9)  # of a triangle across the room, in its sizes
 HEAD = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"  # of a table of spheres
 
@@ -100,10 +99,7 @@ def motions(p: ScenePlan, phase: decks.Deck) -> tuple[Move, ...]:
 def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
     """The walls whose forces are in the rows; where a place [m] is given the torque about it, too: on the axis of a
     wall's turn, else 0."""
-    of_kind = [wall for wall, column in OF_KINDS.items() if column in p.row_columns]
-    found = [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.loads]
-    found += [("drum", torque_origin(p, "drum"))] if "torque" in p.row_columns else []
-    return [*found, *((name, None) for name in of_kind)]
+    return [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.measured_walls]
 
 
 def fills(p: ScenePlan, phase: decks.Deck) -> list[decks.Deck]:

@@ -7,14 +7,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...case.kinds import Preset
 from ...errors import EngineError
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from ..host import frames
 from .scene_parts import is_endless, wall_names
 
-PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m], whether the
 # bodies are attached, force on the first [N], unit normal; with compaction what growth adds
 CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.FORCE, *columns.NORMAL, *columns.GROWTH]
@@ -44,10 +42,7 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
                 raise EngineError(f"{log}: the row of step {fields[0]} is damaged; run the case again") from None
     if not table:
         raise EngineError(f"{log}: no rows; the run ended before its first step")
-    found = columns.rows(p, table, [PRESETS.get(name, name) if isinstance(p.scene, Preset) else name for name in heads])
-    if "floor_load" in found:
-        found["floor_load"] *= -1.0  # pressed down
-    return found[[name for name in found if name in columns.columns_of_rows(p)]]
+    return columns.rows(p, table, heads)
 
 
 def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:

@@ -21,6 +21,7 @@ from pydantic import BaseModel
 from ...base.declarations import Declaration, declarations
 from ...case.fields import LawChoice, Material, Quantity
 from ...case.impact import Case
+from ...case.kinds import Keys, model_of
 from ...case.law import alternatives, law_keys
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...case.sizes import LARGEST_FILE
@@ -67,6 +68,9 @@ def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) ->
         yield place, Key(unit=quantities[0].si if quantities else None)
         for n, entry in enumerate(data if isinstance(data, list) else ()):
             yield from _walk(arguments[0], (*place, str(n)), entry, case)
+    elif kind is Keys:
+        if model := model_of((data or {}).get("kind")):
+            yield from _fields(model, place, data, case)
     elif isinstance(kind, type) and issubclass(kind, BaseModel):
         yield from _fields(kind, place, data if isinstance(data, dict) else {}, case)
     elif kind is not type(None):

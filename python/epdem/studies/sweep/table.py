@@ -9,6 +9,7 @@ import pandas as pd
 
 from ...base.tables import Hdf5, open_results, read_table, write_attributes, write_csv, write_table, write_text
 from ...case.parts import MEASURES
+from ...case.scene import parse
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
@@ -112,5 +113,6 @@ def unit(name: str, case: Mapping[str, Any]) -> str | None:
         return CHECKS[name].unit or None
     column = name.rpartition("_")[0]
     kinds = {m["name"]: MEASURES[m["kind"]] for m in case.get("scene", {}).get("measure", [])}
-    known = kinds.get(column) or COLUMNS.get(column)
+    rows = {row.name: row for row in parse(dict(case)).parts.row}
+    known = kinds.get(column) or COLUMNS.get(column) or rows.get(column)
     return known.unit or None if known else unit_of_load(column)

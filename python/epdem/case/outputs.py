@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Columns of the rows, checks and the key figure that a scene of parts names, beside those that every scene has. SI."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from .fields import Frozen, Length, Line, Name, Quantity, Speed
+from .walls import Axis, PartName, Place, Side
+
+UNITS = {"force": "N", "torque": "N m", "position": "m"}
+
+
+class Row(Frozen):
+    """A column of the rows: a component of the force or torque of the spheres on a wall, mean over a row, or the place
+    of a wall with constant velocities in the middle of the row. area: the force is divided by it.
+    """
+
+    name: PartName
+    wall: PartName
+    force: Side | None = None
+    torque: Side | None = None
+    position: Axis | None = None
+    area: Annotated[float, Quantity("m^2", above=0.0)] | None = None
+    title: Line
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if sum(x is not None for x in (self.force, self.torque, self.position)) != 1:
+            raise ValueError("give one of force, torque and position")
+        if self.area is not None and self.force is None:
+            raise ValueError("'area' belongs to force, and only to it")
+        return self
+
+    @property
+    def quantity(self) -> str:
+        return "force" if self.force else "torque" if self.torque else "position"
+
+    @property
+    def unit(self) -> str:
+        return "Pa" if self.area else UNITS[self.quantity]
+
+    @property
+    def sign(self) -> float:
+        return -1.0 if "-" in (self.force or self.torque or "") else 1.0
+
+    @property
+    def axis(self) -> int:
+        return "xyz".index((self.force or self.torque or self.position or "")[-1])
+
+
+class FloorLoad(Frozen):
+    """The column `row` is the weight of the spheres at the end."""
+
+    kind: Literal["floor_load"]
+    row: PartName
+
+
+class BedRebound(Frozen):
+    """A bed rises by at most e_n^2 times its fall."""
+
+    kind: Literal["rebound_of_the_bed"]
+
+
+class MassFlow(Frozen):
+    """The mass flow through a round outlet at the height `at` of a round bin agrees with Beverloo's formula."""
+
+    kind: Literal["mass_flow"]
+    outlet: Length
+    bin: Length
+    at: Place
+
+
+class ReboundSpeed(Frozen):
+    """Spheres of `fill` with this speed that meet a flat target alone leave it with e_n v."""
+
+    kind: Literal["rebound_speed"]
+    fill: PartName
+    target: Name
+    speed: Speed
+
+
+class Press(Frozen):
+    """Loading is at most as stiff as unloading, and returns no more work: of the rows `force` and `position`."""
+
+    kind: Literal["press"]
+    force: PartName
+    position: PartName
+
+
+Check = Annotated[FloorLoad | BedRebound | MassFlow | ReboundSpeed | Press, Field(discriminator="kind")]

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Kinds of scenes are files: a kind of the user's own in three engines, and no kind is known below the room case."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from parts_cases import GLASS, STEEL
+from scene_runs import run, write_case
+
+from engines.lammps_decks import needs_lammps
+from epdem.case.scene import load
+from epdem.case.toml import read_toml, text_for_anywhere
+from epdem.errors import CaseError
+from epdem.scenes.plan import plan
+from epdem.studies.pages import write_scene_page, write_sweep_page
+from epdem.studies.sweep.run import plan as plan_sweep
+from epdem.studies.sweep.run import run as run_sweep
+
+ROOT = Path(__file__).parents[2]
+EPDEM = str(Path(sys.executable).with_name("epdem"))
+MILL = re.search(r"```toml in scenes/test_kinds.py\n(.*?)```", (ROOT / "docs/scenes.md").read_text(), re.S)[1]
+SCENE = {"kind": "./mill.toml.j2", "balls": [{"material": "glass", "radius": "3 mm"}], "walls": "steel", "count": 20}
+SCENE |= {"diameter": "50 mm", "duration": "80 ms"}
+CASE = {
+    "case": {"name": "mill", "title": "A mill", "source": "a test"},
+    "materials": {"glass": GLASS, "steel": STEEL},
+    "law": {"name": "thornton"},
+    "scene": SCENE,
+    "output": {"rows": 20, "particles": 20, "energy": True},
+    "contact": {"friction": 0.4},
+    "numerics": {"time_step": "2e-5 s"},
+}
+
+
+@pytest.fixture
+def mill(tmp_path):
+    """A case of a kind that lies beside it."""
+    (tmp_path / "mill.toml.j2").write_text(MILL)
+    return write_case(CASE, tmp_path)
+
+
+ENGINES = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
+    pytest.param("lammps", marks=needs_lammps),
+]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_kind_of_a_user_runs_and_its_torque_does_the_work(engine, mill):
+    """The balls fall on the turning shell; the torque of its row, times its turn, is the work in the energy balance."""
+    assert len(MILL.splitlines()) <= 20
+    outcome = run(mill, engine, out=mill.parent / "out")
+    rows, balance = outcome.results.rows, outcome.results.energy_balance
+    assert outcome.passed and "torque" in rows and "shell_torque_y" not in rows and "wall_power" not in rows
+    work = np.cumsum(-6.0 * rows["torque"] * np.diff(rows["time"], prepend=0.0))
+    assert balance["work"].iloc[-1] == pytest.approx(work.iloc[-1], rel=1e-9)
+    assert np.abs(rows["torque"]).max() > 0
+    page = write_scene_page(outcome).read_text()
+    assert "Key figure: torque against time" in page and "A scene of kind mill" in page
+
+
+@pytest.mark.liggghts
+def test_a_kind_of_a_user_is_swept_and_viewed(mill):
+    out = mill.parent / "sweep"
+    found = run_sweep(plan_sweep(mill, {"scene.count": "5,10"}), out)
+    assert found.passed and found.table["particles_last"].tolist() == [5, 10]
+    assert found.table.attrs["units"]["torque_max"] == "N m"
+    assert "torque" in write_sweep_page(found).read_text()
+    subprocess.check_call([EPDEM, "view", str(mill), "-o", str(mill.parent / "view.png")], stdout=subprocess.DEVNULL)
+    assert (mill.parent / "view.png").stat().st_size > 1000
+
+
+def test_the_file_of_a_kind_counts_from_the_case_and_goes_with_it(mill, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "case.toml").write_text(text_for_anywhere(mill))
+    one, two = plan(load(mill)), plan(load(other / "case.toml"))
+    assert one.scene == two.scene and read_toml(other / "case.toml")["scene"]["kind"] == str(tmp_path / "mill.toml.j2")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"diameter": "-5 cm"}, r"scene.diameter = '-5 cm', must lie in \(0, inf\) m"),
+        ({"diameter": "2 cm"}, "scene: a ball is larger than a quarter of the mill; give a larger diameter"),
+        ({"walls": "tin"}, r"scene.walls = 'tin' is not defined; add \[materials.tin\]"),
+        ({"count": 100_000}, r"scene.count = 100000: the spheres would fill .* at most 26%"),
+        ({"lifters": 3}, "scene.lifters = 3, unknown key; remove it or correct its spelling"),
+        ({"kind": "./kiln.toml.j2"}, "kiln.toml.j2: no such file"),
+        ({"kind": "mill"}, "scene.kind = 'mill', must be one of 'compaction', 'drum', 'hopper', 'peening', 'settle', "),
+    ],
+)
+def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
+    path = write_case(CASE | {"scene": SCENE | change}, mill.parent)
+    with pytest.raises(CaseError, match=words):
+        plan(load(path))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[keys]", "[key]", r"mill.toml.j2: \[keys\] at the head has a mistake: 'keys'"),
+        ("{% set r = diameter / 2 %}", "", "scene of kind './mill.toml.j2': 'r' is undefined"),
+        ('kind = "cylinder"', 'kind = "tube"', "scene of kind './mill.toml.j2': wall.0.kind = 'tube', must be one of"),
+        ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
+        ('wall = "shell"', 'wall = "hull"', "row.torque.wall: 'hull' is no wall that has a torque"),
+    ],
+)
+def test_a_mistake_of_a_kind_names_its_file(old, new, words, mill):
+    (mill.parent / "mill.toml.j2").write_text(MILL.replace(old, new))
+    with pytest.raises(CaseError, match=words):
+        load(mill)
+
+
+def test_no_word_of_a_kind_stands_below_the_room_of_cases():
+    """Names of kinds and of their walls, in code and templates; `compaction` is also an option of laws."""
+    names = sorted(path.name.removesuffix(".toml.j2") for path in (ROOT / "templates/kinds").iterdir())
+    assert names == ["compaction", "drum", "hopper", "peening", "settle"]
+    words = rf"\b(Preset|{'|'.join(name.title() for name in names)})\b|[\"'](settle|hopper|drum|peening)[\"']"
+    words += r"|kind == [\"']|\b(plate_force|plate_z|press_z)\b|f_(drum|plate|floor)\b"
+    rooms = [
+        path
+        for room in ("scenes", "engines", "studies", "yade")
+        for path in (ROOT / "python/epdem" / room).rglob("*.py")
+    ]
+    rooms += [path for host in ("liggghts", "lammps", "yade") for path in (ROOT / "templates" / host).rglob("*.j2")]
+    assert len(rooms) > 60
+    found = [f"{path.name}: {hit[0]}" for path in rooms for hit in re.finditer(words, path.read_text())]
+    allowed = {"measures.py", "scene.py.j2"}  # kinds of measures and of motions
+    assert [hit for hit in found if hit.partition(":")[0] not in allowed] == []
