@@ -24,6 +24,7 @@ from pydantic import BaseModel
 
 import epdem
 from epdem.base.declarations import declarations
+from epdem.case import kinds
 from epdem.case.fields import Quantity
 from epdem.case.impact import Case
 from epdem.case.law import law_keys
@@ -114,7 +115,11 @@ def cases() -> str:
         "Quantities are texts with a unit; the unit here is that of the limits and in Python.\n",
     ]
     for whole, title in ((Case, "Impacts"), (SceneCase, "Bulk scenes")):
-        text.append(f"## {title}\n\n{_tables(whole, '', set())}")
+        text.append(f"## {title}\n\n{_tables(whole, '', seen := set())}")
+    for name in kinds.names()[:-1]:
+        model = kinds.model_of(name)
+        assert model is not None  # a name of its own list
+        text.append(f'## scene.kind = "{name}"\n\n{_tables(model, "scene.", seen)}')
     return "\n".join([*text, laws()])
 
 

@@ -13,8 +13,8 @@ PAGE = (CASES.parent / "docs/scenes.md").read_text()
 
 
 def block(language: str) -> str:
-    (text,) = re.findall(rf"^```{language}(?: in [^\n]*)?\n(.*?)^```$", PAGE, re.M | re.S)
-    return text
+    """The first block of a language."""
+    return re.search(rf"^```{language}(?: in [^\n]*)?\n(.*?)^```$", PAGE, re.M | re.S)[1]
 
 
 @pytest.mark.liggghts

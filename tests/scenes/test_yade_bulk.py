@@ -20,6 +20,7 @@ from epdem.engines.yade.engine import Yade
 from epdem.engines.yade.launcher import environment
 from epdem.errors import CaseError, EngineError
 from epdem.scenes import placement
+from epdem.scenes.columns import named_rows
 from epdem.scenes.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -97,7 +98,7 @@ def pressed(path: Path, folder: Path):
     outcome = run(path, engine="yade", out=folder / "yade")
     liggghts_with_places_of(np.loadtxt(folder / "yade" / "spheres.txt")[:, :5], outcome.case, folder / "liggghts")
     launcher.run("in.scene", folder / "liggghts")
-    return outcome, log.scene_rows(outcome.plan, folder / "liggghts" / launcher.OUT)
+    return outcome, named_rows(outcome.plan, log.scene_rows(outcome.plan, folder / "liggghts" / launcher.OUT))
 
 
 @pytest.mark.yade("module")
@@ -166,7 +167,7 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
     assert "YADE leaves a folder: False" in done.stderr
     (tmp_path / "deck" / Yade.out).write_text(done.stdout)
     outcome = run(path, engine="yade", out=tmp_path / "out")
-    rows = yade_tables.rows(outcome.plan, tmp_path / "deck" / Yade.out)
+    rows = named_rows(outcome.plan, yade_tables.rows(outcome.plan, tmp_path / "deck" / Yade.out))
     assert rows.equals(outcome.results.rows)
 
 

@@ -142,6 +142,8 @@ def test_every_block_of_toml_is_a_case_a_part_of_one_or_a_setting(tmp_path, monk
             (tmp_path / "epdem/config.toml").write_text(text)
             monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
             assert paths.setting()
+        elif words[:1] == ["in"]:
+            continue
         elif words:
             given = tomllib.loads(text)
             whole = {"law": {}} if "name" in given.get("law", {}) else {}  # a law with all its keys

@@ -89,7 +89,8 @@ def keys_of(path: Path, text: str) -> type[Keys]:
         fields: dict[str, Any] = {name: _annotation(key) for name, key in heads.items()}
     except (tomllib.TOMLDecodeError, KeyError, TypeError) as error:
         raise ValueError(f"{path}: [keys] at the head has a mistake: {error}") from None
-    model = create_model(path.name.removesuffix(KIND), __base__=Keys, **fields)
+    said = head.partition("\n")[0].removeprefix("# ")
+    model = create_model(path.name.removesuffix(KIND), __base__=Keys, __doc__=said, **fields)
     model.body, model.heads = line + below, heads
     return model
 
