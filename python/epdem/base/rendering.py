@@ -4,8 +4,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache
-from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import jinja2
@@ -20,20 +20,13 @@ def number(x: float | int) -> str:
     return repr(int(x)) if isinstance(x, int | np.integer) else repr(float(x))
 
 
-class Deck(SimpleNamespace):
-    """Values of a template: words and numbers of an engine; other names are attributes of `plan`."""
+@dataclass(frozen=True)
+class Head:
+    """First lines of a deck: title and source of the case, summary of the job."""
 
-    def __init__(self, plan: object, **values: object):
-        super().__init__(plan=plan, **values)
-
-    def __getattr__(self, name: str) -> Any:
-        if name == "plan" or name.startswith("__"):
-            raise AttributeError(name)
-        return getattr(self.plan, name)
-
-    def but(self, **values: object) -> "Deck":
-        """The same deck with other values."""
-        return Deck(**(vars(self) | values))
+    title: str
+    source: str
+    summary: str
 
 
 REASON = "\x1f"  # between a line and its reason

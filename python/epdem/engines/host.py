@@ -25,7 +25,7 @@ from ..scenes.engine import Resumed
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
 from ..theory.sources import Source
-from . import input_script, log
+from . import log
 
 LIGGGHTS = "use --engine liggghts"  # the engine of every scene
 
@@ -53,8 +53,12 @@ class Host(ABC):
         """The compiled parts of epdem that the program loads."""
 
     @abstractmethod
-    def deck(self, plan: Plan) -> decks.Deck:
+    def deck(self, plan: Plan) -> object:
         """The deck of a plan. Raises CaseError for what the program cannot do."""
+
+    @abstractmethod
+    def impact_files(self, plan: Plan) -> dict[str, str]:
+        """The text of every file of the deck of impacts by its name. Raises CaseError."""
 
     def check_scene(self, plan: ScenePlan) -> list[str]:
         """Sentences on what a scene leaves out. Raises CaseError for what the program cannot do."""
@@ -100,12 +104,6 @@ class Host(ABC):
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
         return write_texts(folder, self.files(job) if isinstance(job, ScenePlan) else self.impact_files(job))
 
-    def impact_files(self, plan: Plan) -> dict[str, str]:
-        """The text of every file of the deck of impacts by its name. Raises CaseError."""
-        deck = self.deck(plan)
-        data = input_script.data_text(plan, len(deck.types))
-        return {"in.impact": decks.render(self.template, deck=deck), deck.data: data}
-
     @overload
     def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
 
@@ -123,6 +121,17 @@ class Host(ABC):
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         raise CaseError(f"{folder}: a scene in {self.title} runs from its start; run it anew")
+
+
+def impact_head(plan: Plan) -> decks.Head:
+    """The head of the deck of impacts."""
+    x = plan.experiment
+    return decks.Head(x.title, x.source, f"{plan.summary}, law {x.law.name}")
+
+
+def scene_head(p: ScenePlan) -> decks.Head:
+    """The head of the deck of a scene."""
+    return decks.Head(p.case.case.title, p.case.case.source, p.summary)
 
 
 def job_of(path: Path) -> Plan | ScenePlan:

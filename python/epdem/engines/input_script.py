@@ -4,15 +4,16 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from ..base.rendering import Deck, number
+from ..base.rendering import number, render
 from ..errors import CaseError
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan, room, side_by_side
 from ..scenes.limits import PressedBed
-from ..scenes.plan import Phase, ScenePlan
+from ..scenes.plan import PhaseSteps, ScenePlan
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
@@ -60,6 +61,21 @@ def data_text(plan: Plan, types: int) -> str:
         for k, g in zip(kinds, side_by_side(plan), strict=False)
     ]
     return text(plan.experiment.name, types, room(plan), groups)
+
+
+class ImpactDeck(Protocol):
+    """A deck of impacts with a data file of bodies of some types."""
+
+    @property
+    def data(self) -> str: ...
+
+    @property
+    def types(self) -> tuple[str, ...]: ...
+
+
+def impact_files(template: str, deck: ImpactDeck, plan: Plan) -> dict[str, str]:
+    """The text of every file of a deck of impacts by its name."""
+    return {"in.impact": render(template, deck=deck), deck.data: data_text(plan, len(deck.types))}
 
 
 def finite(value: float) -> float:
@@ -118,47 +134,22 @@ def row_words(p: ScenePlan) -> Iterator[str]:
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 
 
-def phases(p: ScenePlan) -> Iterator[tuple[Phase | None, Deck, Phase | None]]:
-    """Each phase between its neighbours, with what every deck states of it.
-
-    steps: of the phase. own_time_step: None if the phase before has the same. added, removed: walls that come with the
-    phase, and that go at its end. upto: whether the step at its end is known before the run. end_frames: kinds of
-    frames that its end needs beside those every so many steps. goes_on: whether frames follow.
-    """
-    upto = True
-    for before, phase, after in zip((None, *p.phases[:-1]), p.phases, (*p.phases[1:], None), strict=True):
-        upto = upto and phase.case.condition is None
-        stated = Deck(
-            phase,
-            upto=upto,
-            end_frames=[
-                name for name, every in p.intervals.items() if phase.case.record and (not upto or phase.end % every)
-            ],
-            goes_on=bool(after and after.case.record),
-            steps=phase.end - (before.end if before else 0),
-            own_time_step=phase.time_step if phase.time_step != (before or phase).time_step else None,
-            record=phase.case.record,
-            added=[name for name in phase.gates if before is None or name not in before.gates],
-            removed=[name for name in phase.gates if after and name not in after.gates],
-        )
-        yield before, stated, after
-
-
-def first_look(p: ScenePlan, phase: Deck) -> int:
+def first_look(p: ScenePlan, run: PhaseSteps) -> int:
     """The steps of a phase before its condition is looked at."""
-    return int(min(phase.steps, p.every * max(1, math.ceil(phase.case.condition_from / phase.time_step / p.every))))
+    rows = math.ceil(run.phase.case.condition_from / run.phase.time_step / p.every)
+    return min(run.steps, p.every * max(1, rows))
 
 
-def stop_condition(p: ScenePlan, phase: Deck, place: Callable[[PressedBed], str]) -> StopCondition | None:
+def stop_condition(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], str]) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS: by its condition, or by a bed without void.
 
     None: it does not. place: formula of the place of the plate that presses a bed.
     """
-    void = next((void_height(bed, place(bed)) for bed in p.pressed if bed.phase == phase.name), "")
-    until = phase.case.condition
+    void = next((void_height(bed, place(bed)) for bed in p.pressed if bed.phase == run.name), "")
+    until = run.phase.case.condition
     if until is None:
-        return StopCondition(0, phase.steps // p.every, "", "", void) if void else None
-    first = first_look(p, phase)
+        return StopCondition(0, run.steps // p.every, "", "", void) if void else None
+    first = first_look(p, run)
     if until.kinetic_energy is not None:
         formula, sign = "ke/atoms", "<"
     elif until.count is not None:
@@ -166,7 +157,7 @@ def stop_condition(p: ScenePlan, phase: Deck, place: Callable[[PressedBed], str]
     else:
         load = f"f_load{1 + p.measured_walls.index(until.wall or '')}"
         formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
-    return StopCondition(first, (phase.steps - first) // p.every, formula, f"{sign} {number(until.limit)}", void)
+    return StopCondition(first, (run.steps - first) // p.every, formula, f"{sign} {number(until.limit)}", void)
 
 
 def void_height(bed: PressedBed, place: str) -> str:

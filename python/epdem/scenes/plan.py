@@ -70,6 +70,57 @@ class Phase:
 
 
 @dataclass(frozen=True)
+class PhaseSteps:
+    """A phase between its neighbours. upto: whether the step at its end is known before the run. end_frames: kinds of
+    frames that its end needs beside those every so many steps.
+    """
+
+    phase: Phase
+    before: Phase | None
+    after: Phase | None
+    upto: bool
+    end_frames: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        return self.phase.name
+
+    @property
+    def moves(self) -> dict[str, Move]:
+        return self.phase.moves
+
+    @property
+    def record(self) -> bool:
+        """Whether the phase has frames."""
+        return self.phase.case.record
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether frames follow in the next phase."""
+        return self.after is not None and self.after.case.record
+
+    @property
+    def steps(self) -> int:
+        return self.phase.end - (self.before.end if self.before else 0)
+
+    @property
+    def own_time_step(self) -> float | None:
+        """The time step [s]; None: that of the phase before."""
+        step = self.phase.time_step
+        return None if self.before is None or self.before.time_step == step else step
+
+    @property
+    def added(self) -> list[str]:
+        """Walls that come with the phase."""
+        return [name for name in self.phase.gates if self.before is None or name not in self.before.gates]
+
+    @property
+    def removed(self) -> list[str]:
+        """Walls that go at its end."""
+        return [name for name in self.phase.gates if self.after and name not in self.after.gates]
+
+
+@dataclass(frozen=True)
 class ScenePlan:
     """The job of an engine, from which its tables are made as well.
 
@@ -103,6 +154,16 @@ class ScenePlan:
     def pressed(self) -> tuple[PressedBed, ...]:
         """Beds whose relative density the run has to look at, which ends if it is 1."""
         return tuple(bed for bed in self.beds if math.isnan(bed.height))
+
+    @property
+    def phase_steps(self) -> tuple[PhaseSteps, ...]:
+        """The phases as decks state them."""
+        found, upto = [], True
+        for before, phase, after in zip((None, *self.phases[:-1]), self.phases, (*self.phases[1:], None), strict=True):
+            upto = upto and phase.case.condition is None
+            ends = (name for name, every in self.intervals.items() if not upto or phase.end % every)
+            found.append(PhaseSteps(phase, before, after, upto, tuple(ends) if phase.case.record else ()))
+        return tuple(found)
 
     @property
     def steps(self) -> int:
@@ -175,6 +236,11 @@ class ScenePlan:
         table, now = self.phase_table, float(self.time_at(np.array([step]))[0])
         lasted = (np.minimum(table["end_time"], now) - table["begin_time"]).clip(lower=0.0)
         return [(phase.moves, float(seconds)) for phase, seconds in zip(self.phases, lasted, strict=True)]
+
+    @property
+    def samples(self) -> int:
+        """Samples of a force in the mean that a row holds."""
+        return self.every // self.sampling
 
     @property
     def output(self) -> Output:

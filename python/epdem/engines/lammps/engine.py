@@ -2,6 +2,7 @@
 """LAMMPS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +18,29 @@ from ...impacts.plan import Plan, approach
 from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from ..host import Host
-from ..input_script import atom_types
+from ..host import Host, impact_head
+from ..input_script import atom_types, impact_files
 from . import launcher, scene_deck, scene_tables, words
 
 PATH, END, LOG = "path.txt", "end.txt", "log.lammps"
+
+
+@dataclass(frozen=True)
+class ImpactDeck:
+    """Values of the template of impacts. types: materials of the atom types. pairs: the words of each type. wall: the
+    words of the wall; None: none is hit.
+    """
+
+    plan: Plan
+    head: decks.Head
+    data: str
+    skin: float
+    types: tuple[str, ...]
+    pairs: tuple[str, ...]
+    wall: str | None
+    oblique: bool
+    path: str = PATH
+    end: str = END
 
 
 class Lammps(Host):
@@ -60,24 +79,23 @@ class Lammps(Host):
         plugin = paths.native("lammps/epdemplugin.so")
         return [plugin] if plugin else []
 
-    def deck(self, plan: Plan) -> decks.Deck:
+    def impact_files(self, plan: Plan) -> dict[str, str]:
+        return impact_files(self.template, self.deck(plan), plan)
+
+    def deck(self, plan: Plan) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what the plugin cannot do."""
         x, types = plan.experiment, atom_types(plan)
         check_features(self, x)
         wall = math.isinf(x.target.radius)
-        return decks.Deck(
-            plan,
-            title=x.title,
-            source=x.source,
-            summary=f"{plan.summary}, law {x.law.name}",
+        return ImpactDeck(
+            plan=plan,
+            head=impact_head(plan),
             data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius),
             types=tuple(body.material for body, _ in types),
             pairs=tuple(contact(plan, body, strength) for body, strength in types),
             wall=contact(plan, *types[-1]) if wall else None,
             oblique=x.oblique is not None,
-            path=PATH,
-            end=END,
         )
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The LAMMPS deck of a scene: one input file, and a data file for the spheres that come with a phase."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
 
@@ -10,11 +12,11 @@ from ...base import rendering as decks
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.columns import columns_of_frames
-from ...scenes.plan import ScenePlan
-from ..host import LIGGGHTS, refuse
-from ..input_script import default_skin, phases, row_words, stop_condition, wall_id
+from ...scenes.plan import PhaseSteps, ScenePlan
+from ..host import LIGGGHTS, refuse, scene_head
+from ..input_script import StopCondition, default_skin, row_words, stop_condition, wall_id
 from . import words
-from .scene_walls import meshes, motions, plane, plate_place
+from .scene_walls import DeckWall, meshes, motions, plane, plate_place
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -40,52 +42,93 @@ def check(p: ScenePlan) -> None:
         raise CaseError(f"scene: no sphere is there at the start, LAMMPS needs one; {LIGGGHTS}")
 
 
-def deck(p: ScenePlan) -> decks.Deck:
+@dataclass(frozen=True)
+class PhaseCommands:
+    """A phase. data: file of the spheres that come with it; None: none do. placed: spheres that were placed before.
+
+    fills: key, id, and limits of the region that has to be empty. gates: planes that come with it. commands: which set
+    walls in motion. ends: fixes that end with it.
+    """
+
+    run: PhaseSteps
+    data: str | None
+    placed: int
+    fills: tuple[tuple[str, str, str], ...]
+    gates: tuple[DeckWall, ...]
+    commands: tuple[str, ...]
+    ends: tuple[str, ...]
+    stop: StopCondition | None
+
+
+@dataclass(frozen=True)
+class SceneDeck:
+    """Values of the template of a scene.
+
+    materials: type, material, options of its contacts; pairs: two types, options. loads_of: number, id, whether the
+    wall has a torque. frozen: ids of spheres that rest. columns: of the frames.
+    """
+
+    plan: ScenePlan
+    head: decks.Head
+    boundary: str
+    processors: str | None
+    skin: float
+    settings: str
+    materials: tuple[tuple[int, str, str], ...]
+    pairs: tuple[tuple[int, int, str], ...]
+    motions: tuple[str, ...]
+    walls: tuple[DeckWall, ...]
+    loads_of: tuple[tuple[int, str, bool], ...]
+    frozen: tuple[int, ...]
+    phases: tuple[PhaseCommands, ...]
+    mesh_ids: tuple[str, ...]
+    contact_walls: tuple[str, ...]
+    row_words: tuple[str, ...]
+    columns: tuple[str, ...]
+
+
+def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
+    gates = {w.name: plane(p, w) for w in p.scene.gates}
+    first = p.phases[0].name
+    placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
+    for run in p.phase_steps:
+        yield PhaseCommands(
+            run=run,
+            data=_data_file(p, run.name),
+            placed=placed,
+            fills=tuple(_fills(p, run.name)),
+            gates=tuple(gates[name] for name in run.added),
+            commands=tuple(motions(p, run.before, run.phase)) if run.before else (),
+            ends=tuple(wall_id(name) for name in run.removed),
+            stop=stop_condition(p, run, partial(plate_place, p)),
+        )
+        placed += sum(b.phase == run.name for b in p.scene.later)
+        placed += sum(f.count for f in p.insertions if f.phase == run.name != first)
+
+
+def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LAMMPS cannot do."""
     check(p)
     types = range(1, len(p.model.types) + 1)
-    gates = {w.name: plane(p, w) for w in p.scene.gates}
     cut = p.case.numerics.processors
-    walls = (*(plane(p, w) for w in p.scene.planes), *meshes(p))
-    scene_phases = []
-    first = p.phases[0].name
-    placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
-    for before, phase, _ in phases(p):
-        scene_phases.append(
-            phase.but(
-                data=_data_file(p, phase.name),
-                placed=placed,
-                fills=_fills(p, phase.name),
-                gates=[gates[name] for name in phase.added],
-                commands=motions(p, before, phase) if before else [],
-                ends=[wall_id(name) for name in phase.removed],
-                stop=stop_condition(p, phase, partial(plate_place, p)),
-            )
-        )
-        placed += sum(b.phase == phase.name for b in p.scene.later)
-        placed += sum(f.count for f in p.insertions if f.phase == phase.name != first)
-    return decks.Deck(
-        p,
-        title=p.case.case.title,
-        source=p.case.case.source,
+    return SceneDeck(
+        plan=p,
+        head=scene_head(p),
         boundary="p p f" if p.scene.periodic else "f f f",
         processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         skin=p.case.numerics.skin or default_skin(p),
         settings=" energies" * (p.output.energy or p.contacts > 0) + " strain",
-        materials=[(i, words.of_type(p, i), words.options(p, i, i)) for i in types],
-        pairs=[(i, j, words.options(p, i, j)) for i, j in combinations(types, 2) if _is_special(p, i, j)],
-        motions=motions(p, None, p.phases[0]),
-        walls=walls,
+        materials=tuple((i, words.of_type(p, i), words.options(p, i, i)) for i in types),
+        pairs=tuple((i, j, words.options(p, i, j)) for i, j in combinations(types, 2) if _is_special(p, i, j)),
+        motions=tuple(motions(p, None, p.phases[0])),
+        walls=(*(plane(p, w) for w in p.scene.planes), *meshes(p)),
         loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
-        frozen=[n for n, s in enumerate(p.scene.table, 1) if s.frozen],
-        gravity=p.scene.gravity,
-        phases=scene_phases,
-        mesh_ids=[wall_id(name) for name in p.scene.meshes],
-        contact_walls=[wall_id(w) for w in contact_walls(p)],
-        row_words=["f_ratio[1]", "f_ratio[2]", *row_words(p)],
-        columns=[WORKS.get(name, name.replace("_", "")) for name in columns_of_frames(p)],
-        samples=p.every // p.sampling,
-        restarts=0,
+        frozen=tuple(n for n, s in enumerate(p.scene.table, 1) if s.frozen),
+        phases=tuple(_phases(p)),
+        mesh_ids=tuple(wall_id(name) for name in p.scene.meshes),
+        contact_walls=tuple(wall_id(w) for w in contact_walls(p)),
+        row_words=("f_ratio[1]", "f_ratio[2]", *row_words(p)),
+        columns=tuple(WORKS.get(name, name.replace("_", "")) for name in columns_of_frames(p)),
     )
 
 
@@ -131,4 +174,4 @@ def files(p: ScenePlan) -> dict[str, str]:
     """The text of every file of a scene's deck by its name. Raises CaseError."""
     data = deck(p)
     texts = {"in.scene": decks.render("lammps/scene.in.j2", deck=data), "spheres.data": _data(p, p.phases[0].name)}
-    return texts | {phase.data: _data(p, phase.name) for phase in data.phases if phase.data}
+    return texts | {phase.data: _data(p, phase.run.name) for phase in data.phases if phase.data}

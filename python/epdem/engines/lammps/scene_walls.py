@@ -5,7 +5,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ...base.rendering import Deck, number
+from ...base.rendering import number
 from ...case.walls import (
     BoxWall,
     ConeWall,
@@ -146,7 +146,7 @@ def _numbers(values: Iterable[float]) -> str:
     return " ".join(map(number, values))
 
 
-def _rates(p: ScenePlan, name: str, phase: Phase | Deck) -> dict[str, str]:
+def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
     """What changes in a phase: component of the way [m] or turn [rad], and its formula of T.
 
     T is the time of the motion [s], of a wall that a force drives its way [m].
@@ -192,7 +192,7 @@ def _motion_words(p: ScenePlan, name: str) -> str:
     return " ".join(found)
 
 
-def motions(p: ScenePlan, before: Phase | None, phase: Phase | Deck) -> list[str]:
+def motions(p: ScenePlan, before: Phase | None, phase: Phase) -> list[str]:
     """Commands that set the walls of triangles in motion at the begin of a phase, or stop them."""
     found = []
     for name in p.scene.meshes:

@@ -2,6 +2,7 @@
 """LIGGGHTS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +20,28 @@ from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
-from ..host import Host
-from ..input_script import atom_types, finite
+from ..host import Host, impact_head
+from ..input_script import atom_types, finite, impact_files
 from . import dump, launcher, resume, scene_deck, scene_tables
+from .macros import ContactWords
 from .properties import HARD, SOFT, Property, of_law, tangential
 
 PATH, END = "path.bin", "end.bin"
+
+
+@dataclass(frozen=True)
+class ImpactDeck:
+    """Values of the template of impacts. types: materials of the atom types. wall_type: None: no wall is hit."""
+
+    plan: Plan
+    head: decks.Head
+    contact: ContactWords
+    data: str
+    skin: float
+    types: tuple[str, ...]
+    oblique: bool
+    wall_type: int | None
+    path: str
 
 
 class Liggghts(Host):
@@ -78,7 +95,10 @@ class Liggghts(Host):
         """The material properties of the deck, for this model."""
         return of_law(plan)
 
-    def deck(self, plan: Plan) -> decks.Deck:
+    def impact_files(self, plan: Plan) -> dict[str, str]:
+        return impact_files(self.template, self.deck(plan), plan)
+
+    def deck(self, plan: Plan) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
         x, types = plan.experiment, atom_types(plan)
         check_features(self, x)
@@ -89,21 +109,21 @@ class Liggghts(Host):
                     "only; use --engine embedded"
                 )
         moduli = [finite(b.young_modulus) for b, _ in types]
-        return decks.Deck(
-            plan,
-            title=x.title,
-            source=x.source,
-            summary=f"{plan.summary}, law {x.law.name}",
-            has_history=declarations()[x.law.name].memory > 0 or x.oblique is not None,
-            hard=max(moduli) > HARD,
-            soft=min(moduli) < SOFT,
+        return ImpactDeck(
+            plan=plan,
+            head=impact_head(plan),
+            contact=ContactWords(
+                hard=max(moduli) > HARD,
+                soft=min(moduli) < SOFT,
+                has_history=declarations()[x.law.name].memory > 0 or x.oblique is not None,
+                properties=self.properties(plan),
+                model=self.model(plan),
+                tangential=tangential(self.tangential(plan)),
+                settings=("viscous on",) if x.viscous_restitution is not None else (),
+            ),
             data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius),
             types=tuple(b.material for b, _ in types),
-            properties=self.properties(plan),
-            model=self.model(plan),
-            tangential=tangential(self.tangential(plan)),
-            settings=("viscous on",) if x.viscous_restitution is not None else (),
             oblique=x.oblique is not None,
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             path=PATH,

@@ -19,7 +19,8 @@ from ...scenes.plan import ScenePlan
 from .. import log
 from . import launcher
 from . import scene_tables as tables
-from .scene_deck import deck
+from .scene_deck import SceneDeck, deck
+from .scene_parts import Fill, PhaseCommands
 
 
 def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
@@ -109,40 +110,41 @@ def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
     return step, [s for s in lost if s < step]
 
 
-def _going_on(d: decks.Deck, phase: int, inserted: dict[str, int]) -> Iterator[decks.Deck]:
+def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[Fill]:
     """The insertions of a run that goes on in a phase, without streams that have ended: LIGGGHTS refuses these. A
     stream of an earlier phase goes on in this one."""
-    names = [part.name for part in d.phases]
+    names = [part.run.name for part in d.phases]
     for f in d.insertions:
         if f.once:
             yield f
         elif inserted.get(f.id, 0) < f.count:
-            yield f.but(phase=names[min(max(names.index(f.phase), phase), len(names) - 1)])
+            yield replace(f, phase=names[min(max(names.index(f.phase), phase), len(names) - 1)])
 
 
-def _after(part: decks.Deck, steps: int, every: int) -> decks.Deck:
+def _after(part: PhaseCommands, steps: int, every: int) -> PhaseCommands:
     """Remaining phase after `steps` of its steps have run."""
     stop = part.stop
     if stop is not None:
         looked = max(0, steps - stop.first) // every
         stop = replace(stop, first=max(0, stop.first - steps), rows=stop.rows - looked)
-    return part.but(steps=part.steps - steps, stop=stop)
+    return replace(part, steps=part.steps - steps, stop=stop)
 
 
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
-    ends = log.ends(folder / launcher.OUT, step) if p.ends_early else {part.name: part.end for part in d.phases}
-    phase = next((i for i, part in enumerate(d.phases) if ends.get(part.name, step + 1) > step), len(d.phases))
-    begin = max([0, *(ends[part.name] for part in d.phases[:phase])])
+    ends = log.ends(folder / launcher.OUT, step) if p.ends_early else {phase.name: phase.end for phase in p.phases}
+    number = next((i for i, phase in enumerate(p.phases) if ends.get(phase.name, step + 1) > step), len(p.phases))
+    begin = max([0, *(ends[phase.name] for phase in p.phases[:number])])
     comes = False  # spheres that come with this phase and are not in the restart file
-    if phase < len(d.phases):
-        part = d.phases[phase]
-        comes = step == begin and bool(part.particles or [f for f in d.insertions if f.once and f.phase == part.name])
-        rest = _after(part, step - begin, d.every)
-        d = d.but(phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
+    if number < len(p.phases):
+        part = d.phases[number]
+        at_once = [f for f in d.insertions if f.once and f.phase == part.run.name]
+        comes = step == begin and bool(part.particles or at_once)
+        rest = _after(part, step - begin, p.every)
+        d = replace(d, phases=(*d.phases[:number], rest, *d.phases[number + 1 :]))
     path = folder / "in.resume"
-    going_on = tuple(_going_on(d, phase, log.inserted(folder / launcher.OUT, step)))
-    continued = d.but(insertions=going_on, from_restart=f"restart.{step}.bin", resumed_phase=phase, comes=comes)
+    going_on = tuple(_going_on(d, number, log.inserted(folder / launcher.OUT, step)))
+    continued = replace(d, insertions=going_on, from_restart=f"restart.{step}.bin", resumed_phase=number, comes=comes)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")
     return path

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
@@ -10,9 +11,11 @@ from ...errors import CaseError
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
+from ..host import scene_head
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
+from .macros import ContactWords
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, wear, work_of_adhesion
-from .scene_parts import insertions, parts, planes, stl_text, surfaces, table
+from .scene_parts import Fill, PhaseCommands, Plane, Surface, insertions, phases, planes, stl_text, surfaces, table
 
 WORKS = {  # what dumps call the works and energies of a sphere
     "plastic_work": "f_plasticWork",
@@ -118,53 +121,80 @@ def _refuse_skin(p: ScenePlan) -> None:
         )
 
 
-def deck(p: ScenePlan) -> decks.Deck:
+@dataclass(frozen=True)
+class SceneDeck:
+    """Values of the templates of a scene.
+
+    own_skin: whether the case gives it. frozen: ids of spheres that rest. open: whether a variable holds the step.
+    stress_walls: (name, id, whether it wears). from_restart: file from which the run continues, in the phase of number
+    `resumed_phase`; comes: whether the spheres that come with that phase are still to come.
+    """
+
+    plan: ScenePlan
+    head: decks.Head
+    contact: ContactWords
+    boundary: str
+    skin: float
+    own_skin: bool
+    processors: str | None
+    planes: tuple[Plane, ...]
+    meshes: tuple[Surface, ...]
+    loads_of: tuple[tuple[int, str, bool], ...]
+    frozen: tuple[int, ...]
+    insertions: tuple[Fill, ...]
+    phases: tuple[PhaseCommands, ...]
+    open: bool
+    stress_walls: tuple[tuple[str, str, bool], ...]
+    work_words: tuple[str, ...]
+    history_columns: tuple[str, ...]
+    wall_history_slots: tuple[int, ...]
+    contact_columns: tuple[int, ...]
+    wall_contact_columns: tuple[int, ...]
+    row_words: tuple[str, ...]
+    from_restart: str | None = None
+    resumed_phase: int = 0
+    comes: bool = False
+
+
+def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
     _refuse_skin(p)
     m = p.model
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
-    cut, phases = p.case.numerics.processors, parts(p)
-    return decks.Deck(
-        p,
-        title=p.case.case.title,
-        source=p.case.case.source,
-        hard=max(moduli) > HARD,
-        soft=min(moduli) < SOFT,
+    cut, commands = p.case.numerics.processors, phases(p)
+    return SceneDeck(
+        plan=p,
+        head=scene_head(p),
+        contact=ContactWords(
+            hard=max(moduli) > HARD,
+            soft=min(moduli) < SOFT,
+            has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
+            properties=_properties(p),
+            model=f"ep/{m.law}",
+            tangential=tangential(m.tangential if m.sliding else None),
+            cohesion="sjkr" if m.cohesion else None,
+            rolling_friction=m.rolling.model if m.rolling else None,
+            settings=_settings(p),
+        ),
         boundary="p p f" if p.scene.periodic else "f f f",
-        n_types=len(m.types),
         skin=p.case.numerics.skin or default_skin(p),
         own_skin=p.case.numerics.skin is not None,
         processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
-        properties=_properties(p),
-        model=f"ep/{m.law}",
-        tangential=tangential(m.tangential if m.sliding else None),
-        cohesion="sjkr" if m.cohesion else None,
-        rolling_friction=m.rolling.model if m.rolling else None,
-        settings=_settings(p),
-        wall_type=m.wall_types[""],
         planes=planes(p),
         meshes=surfaces(p),
         loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
-        table=p.scene.table,
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
-        gravity=p.scene.gravity,
         insertions=insertions(p),
-        phases=phases,
-        open=p.ends_early or any(phase.vibrations for phase in phases),
-        samples=p.every // p.sampling,
+        phases=commands,
+        open=p.ends_early or any(phase.vibrations for phase in commands),
         stress_walls=tuple((name, wall_id(name), bool(p.scene.meshes[name].wear)) for name in p.stress_walls),
-        spins=m.spins,
-        has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
-        work_words=[WORKS[name] for name in p.works],
+        work_words=tuple(WORKS[name] for name in p.works),
         history_columns=history_columns(m),
         wall_history_slots=history_slots(m, wall=True),
         contact_columns=contact_columns(history_slots(m), memory(m), 1),
         wall_contact_columns=contact_columns(history_slots(m, wall=True), memory(m, wall=True), 2),
-        row_words=["c_ratio[1]", "c_ratio[2]", *row_words(p)],
-        from_restart=None,
-        resumed_phase=0,
-        comes=False,  # whether the spheres that come with that phase are still to come
+        row_words=("c_ratio[1]", "c_ratio[2]", *row_words(p)),
     )
 
 
@@ -175,6 +205,6 @@ def files(p: ScenePlan) -> dict[str, str]:
         "in.scene": decks.render("liggghts/scene.in.j2", deck=data),
         "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=data),
     }
-    if data.table:
+    if p.scene.table:
         texts["spheres.data"] = decks.render("liggghts/spheres.data.j2", deck=data, rows=table(p))
     return texts | {f"{name}.stl": stl_text(name, triangles) for name, triangles in p.triangles.items()}

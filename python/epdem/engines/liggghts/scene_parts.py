@@ -4,23 +4,120 @@
 import itertools
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.rendering import Deck
 from ...case.parts import Body
-from ...case.walls import LinearMove, Move, PlaneWall, PressMove, Room, RotateMove, VibrateMove
+from ...case.walls import LinearMove, Move, PlaneWall, PressMove, Room, RotateMove, Vector3, VibrateMove
 from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed
-from ...scenes.plan import Phase, ScenePlan
+from ...scenes.plan import Phase, PhaseSteps, ScenePlan
 from ...scenes.walls import surface_rotation
-from ..input_script import phases, stop_condition, torque_origin, wall_id
+from ..input_script import StopCondition, stop_condition, torque_origin, wall_id
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
+
+
+@dataclass(frozen=True)
+class Template:
+    """A size of a fill. limit: the words for a tiny volume, if the template has one."""
+
+    id: str
+    seed: int
+    type: int
+    density: float
+    radius: float
+    share: float
+    limit: str
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A `fix insert`: a distribution of templates, at once or as a stream.
+
+    phase: in which it begins. every: steps between two insertions; None: it is one. once: in one step, so that a
+    continued run has it behind it.
+    """
+
+    id: str
+    phase: str
+    count: int
+    velocity: Vector3
+    seed: int
+    distribution: str
+    distribution_seed: int
+    templates: tuple[Template, ...]
+    region: str
+    rate: float | None
+    every: int | None
+    once: bool
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane. force: LIGGGHTS stores the force of each sphere on it."""
+
+    id: str
+    axis: str
+    at: float
+    type: int
+    force: bool
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A wall of triangles.
+
+    style: with sums of forces, driven by one. keywords: what the surface does. pressed_later: the force that drives the
+    wall acts in later phases only.
+    """
+
+    id: str
+    file: str
+    type: int
+    style: str
+    keywords: str
+    pressed_later: bool
+
+
+@dataclass(frozen=True)
+class NewSphere:
+    """A sphere that comes with a phase; no other centre is as `near` to its place [m]."""
+
+    name: str
+    type: int
+    diameter: float
+    density: float
+    place: str
+    near: float
+    velocity: str
+
+
+@dataclass(frozen=True)
+class PhaseCommands:
+    """A phase: commands at its start and its end, and commands of a run that continues in it.
+
+    steps: that are left. gates: planes that come with the phase. particles: spheres that come with it. power: formula
+    of the power of all that moves. vibrations: (wall, formula of the angle at the begin of the phase) of each vibration
+    whose power is counted.
+    """
+
+    run: PhaseSteps
+    steps: int
+    start_commands: tuple[str, ...]
+    gates: tuple[Plane, ...]
+    resume_gates: tuple[Plane, ...]
+    resume_commands: tuple[str, ...]
+    end_commands: tuple[str, ...]
+    particles: tuple[NewSphere, ...]
+    power: str
+    vibrations: tuple[tuple[str, str], ...]
+    stop: StopCondition | None
 
 
 def primes() -> Iterator[int]:
@@ -51,12 +148,11 @@ def _region(fill: filling.Insertion) -> str:
     return style + _limit(centres, SMALL_ROOM)
 
 
-def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterator[int]) -> list[Deck]:
-    """A template of each size of a fill. limit: the words for a tiny volume, if the template has one."""
+def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
+    """A template of each size of a fill."""
     sizes = [(part, radius, share) for part in fill.particles for radius, share in part.sizes()]
-    return [
-        Deck(
-            part,
+    return tuple(
+        Template(
             id=f"template{i}",
             seed=next(seeds),
             type=p.model.type_of(part.material),
@@ -66,16 +162,13 @@ def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterato
             limit=_limit(4.0 / 3.0 * math.pi * radius**3, SMALL),
         )
         for i, (part, radius, share) in enumerate(sizes, first)
-    ]
+    )
 
 
-def insertions(p: ScenePlan) -> tuple[Deck, ...]:
-    """One `fix insert` for each fill of a scene: a distribution of templates, at once or as a stream.
-
-    once: in one step, so that a continued run has it behind it.
-    """
+def insertions(p: ScenePlan) -> tuple[Fill, ...]:
+    """One `fix insert` for each fill of a scene."""
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
-    result: list[Deck] = []
+    result: list[Fill] = []
     first = 1
     steps = {phase.name: phase.time_step for phase in p.phases}
     for i, fill in enumerate(p.insertions, 1):
@@ -83,9 +176,11 @@ def insertions(p: ScenePlan) -> tuple[Deck, ...]:
         first += len(templates)
         step = steps[fill.phase]
         result.append(
-            Deck(
-                fill,
+            Fill(
                 id=f"fill{i}",
+                phase=fill.phase,
+                count=fill.count,
+                velocity=fill.velocity,
                 seed=next(seeds),
                 distribution=f"mix{i}",
                 distribution_seed=next(seeds),
@@ -107,12 +202,12 @@ def _words(*vectors: Sequence[float]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
 
 
-def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> decks.Deck:
-    """A plane of the scene. force: LIGGGHTS stores the force of each sphere on it."""
-    return decks.Deck(w, id=wall_id(w.name), type=p.wall_types[w.name], force=force)
+def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> Plane:
+    """A plane of the scene."""
+    return Plane(wall_id(w.name), w.axis, w.at, p.wall_types[w.name], force)
 
 
-def planes(p: ScenePlan) -> tuple[decks.Deck, ...]:
+def planes(p: ScenePlan) -> tuple[Plane, ...]:
     """The planes that are always there."""
     return tuple(plane(p, w, force=w.name in p.measured_walls or bool(p.contacts)) for w in p.scene.planes)
 
@@ -125,12 +220,8 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
     return next(iter(presses), None)
 
 
-def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
-    """The walls of triangles.
-
-    style: with sums of forces, driven by one. keywords: what the surface does. pressed_later: the force that drives the
-    wall acts in later phases only.
-    """
+def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
+    """The walls of triangles."""
     pressed = {bed.wall for bed in p.pressed}
     found = []
     for name, mesh in p.scene.meshes.items():
@@ -153,8 +244,7 @@ def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
             words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
-        values = {"id": wall_id(name), "file": f"{name}.stl", "type": p.wall_types[name]}
-        found.append(decks.Deck(mesh, **values, style=style, keywords=words, pressed_later=waits))
+        found.append(Surface(wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
     return tuple(found)
 
 
@@ -180,10 +270,8 @@ def _place(p: ScenePlan, bed: PressedBed) -> str:
     return f"(f_{wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
-def _phase_particle(p: ScenePlan, b: Body) -> decks.Deck:
-    """A sphere that comes with a phase; no other centre is as `near` to its place [m]."""
-    return decks.Deck(
-        b,
+def _new_sphere(p: ScenePlan, b: Body) -> NewSphere:
+    return NewSphere(
         name=f"body_{b.name}",
         type=p.model.type_of(b.material),
         diameter=2 * b.radius,
@@ -194,37 +282,36 @@ def _phase_particle(p: ScenePlan, b: Body) -> decks.Deck:
     )
 
 
-def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
-    """The phases: commands at the start and the end of each, and commands of a run that continues in it.
-
-    gates: planes that come with the phase. particles: spheres that come with it. vibrations: (wall, formula of the
-    angle at the begin of the phase) of each vibration whose power is counted.
-    """
+def phases(p: ScenePlan) -> tuple[PhaseCommands, ...]:
+    """The phases of a scene."""
     gates = {w.name: plane(p, w) for w in p.scene.gates}
-    found: list[decks.Deck] = []
+    found: list[PhaseCommands] = []
     with_power = "wall_power" in p.row_columns
-    for before, phase, after in phases(p):
-        motions = {name: _motion(p, name, move) for name, move in phase.moves.items()}
-        new = [name for name, move in phase.moves.items() if before is None or before.moves.get(name) != move]
-        part = phase.but(
-            start_commands=[motions[name][0] for name in new],
-            gates=[gates[name] for name in phase.added],
-            resume_gates=[gates[name] for name in phase.gates],
-            resume_commands=[begin for begin, _ in motions.values()],
-            end_commands=[
-                *(f"unfix {wall_id(name)}" for name in phase.removed),
-                *(end for name, (_, end) in motions.items() if after and not _goes_on(name, phase, after)),
-            ],
-            particles=[_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name],
-            power=power(p, phase) if with_power else "",
-            vibrations=_angles(before, phase, new) if with_power else [],
-            stop=stop_condition(p, phase, partial(_place, p)),
+    for run in p.phase_steps:
+        motions = {name: _motion(p, name, move) for name, move in run.moves.items()}
+        before, after = run.before, run.after
+        new = [name for name, move in run.moves.items() if before is None or before.moves.get(name) != move]
+        part = PhaseCommands(
+            run=run,
+            steps=run.steps,
+            start_commands=tuple(motions[name][0] for name in new),
+            gates=tuple(gates[name] for name in run.added),
+            resume_gates=tuple(gates[name] for name in run.phase.gates),
+            resume_commands=tuple(begin for begin, _ in motions.values()),
+            end_commands=(
+                *(f"unfix {wall_id(name)}" for name in run.removed),
+                *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run.phase, after)),
+            ),
+            particles=tuple(_new_sphere(p, b) for b in p.scene.later if b.phase == run.name),
+            power=power(p, run.phase) if with_power else "",
+            vibrations=tuple(_angles(before, run.phase, new)) if with_power else (),
+            stop=stop_condition(p, run, partial(_place, p)),
         )
         found.append(part)
     return tuple(found)
 
 
-def _angles(before: Phase | None, phase: decks.Deck, new: list[str]) -> list[tuple[str, str]]:
+def _angles(before: Phase | None, phase: Phase, new: list[str]) -> list[tuple[str, str]]:
     """(wall, formula of the angle [rad] at the begin of a phase) of each wall that vibrates in it."""
     found = []
     for name, move in phase.moves.items():
@@ -235,7 +322,7 @@ def _angles(before: Phase | None, phase: decks.Deck, new: list[str]) -> list[tup
     return found
 
 
-def _goes_on(name: str, phase: decks.Deck, after: Phase) -> bool:
+def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
     """Whether a wall needs no command at the end of a phase: the motion goes on, or another `move/mesh` replaces it."""
     one, next_one = phase.moves[name], after.moves.get(name)
     return next_one is not None and isinstance(one, PressMove) == isinstance(next_one, PressMove)
@@ -264,7 +351,7 @@ def _of_servo(id: str, press: PressMove) -> str:
     return f"{force}*{share}*{decks.number(press.highest_speed)}"
 
 
-def power(p: ScenePlan, phase: decks.Deck) -> str:
+def power(p: ScenePlan, phase: Phase) -> str:
     """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
     terms = []
     for name, mesh in p.scene.meshes.items():

@@ -50,6 +50,19 @@ class Group:
     material: str
 
 
+@dataclass(frozen=True)
+class ContactClasses:
+    """Law and materials of a deck. functors: of epdem_yade; None: the C library's law for `of_pair`, the numbers of the
+    pair, or `native`, a law of YADE.
+    """
+
+    law: str
+    functors: Functors | None
+    materials: tuple[Material, ...]
+    of_pair: Mapping[str, float] | None = None
+    native: bool = False
+
+
 def material(
     name: str,
     law: str,

@@ -7,6 +7,7 @@ A deck has a copy of the module epdem_yade. Without the module a deck of normal 
 import re
 import shutil
 import time
+from dataclasses import dataclass
 from math import isfinite, isinf
 from pathlib import Path
 
@@ -22,13 +23,42 @@ from ...impacts.plan import Plan, approach, side_by_side
 from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from ..host import Host
+from ..host import Host, impact_head
 from . import classes, launcher, scene_deck, scene_tables
-from .classes import Functors, Group, Material, PairValue
+from .classes import ContactClasses, Functors, Group, Material, PairValue
 from .launcher import command, environment, module_version, write_deck_modules
 from .scene_parts import table_text
 
 INSTALL = "apt-get install yade"
+
+
+@dataclass(frozen=True)
+class Anvil:
+    """A fixed sphere under each body, its centre at z [m]: it replaces the wall of a law that has spheres only."""
+
+    radius: float
+    material: str
+    z: float
+
+
+@dataclass(frozen=True)
+class ImpactDeck:
+    """Values of the template of impacts. rigid: whether the target is. wall_material: None: no wall is hit.
+
+    samples: one more than the plan has, for a velocity is the mean of those half a step away.
+    """
+
+    plan: Plan
+    head: decks.Head
+    contact: ContactClasses
+    rigid: bool
+    anvil: Anvil | None
+    wall_material: str | None
+    bodies: tuple[Group, ...]
+    oblique: bool
+    skin: float
+    samples: int
+    path: str = "path.bin"
 
 
 class Yade(Host):
@@ -130,7 +160,7 @@ class Yade(Host):
         values = {"E_star": x.E_star, "R_star": x.R_star, **given, "share": x.law.share}
         return {name: value for name, value in values.items() if value is not None}
 
-    def deck(self, plan: Plan) -> decks.Deck:
+    def deck(self, plan: Plan) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         self.require_module(plan)
@@ -142,24 +172,19 @@ class Yade(Host):
         bodies = [Group("body.data", x.body.radius, x.body.material)]
         if not wall:
             bodies.append(Group("target.data", x.target.radius, x.target.material))
-        return decks.Deck(
-            plan,
-            title=x.title,
-            source=x.source,
-            summary=f"{plan.summary}, law {x.law.name}",
+        return ImpactDeck(
+            plan=plan,
+            head=impact_head(plan),
+            contact=ContactClasses(
+                x.law.name, self.functors(x), tuple(materials.values()), self.of_pair(x), native=self.own_law
+            ),
             rigid=x.target.rigid,
-            law=x.law.name,
-            native=self.own_law,
-            functors=self.functors(x),
             anvil=None,
-            of_pair=self.of_pair(x),
-            materials=tuple(materials.values()),
             wall_material=x.target.material if wall else None,
             bodies=tuple(bodies),
             oblique=x.oblique is not None,
             skin=0.1 * min(x.body.radius, x.target.radius),
-            samples=plan.steps + 2,  # one more than the plan has: a velocity is the mean of those half a step away
-            path="path.bin",
+            samples=plan.steps + 2,
         )
 
     def check_scene(self, plan: ScenePlan) -> list[str]:

@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes in YADE: one Python deck, tables of spheres and triangles, and modules with a copy of the compiled laws."""
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import atan
 
 from ...base import rendering as decks
+from ...case.walls import Move
 from ...scenes import placement
-from ...scenes.plan import ScenePlan
+from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import refuse as refuse_value
-from ..input_script import phases
+from ..host import scene_head
 from . import classes as words
-from .classes import Functors, Material, PairValue, of_pairs
+from .classes import ContactClasses, Functors, Material, PairValue, of_pairs
 from .scene_parts import (
     EDGES,
     HEAD,
+    Fill,
+    Wall,
     bodies_file,
     fills,
     is_endless,
@@ -97,18 +102,62 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
     return Functors(words.title(m.law), ("Sphere", *sorted(shapes)), tuple(pairs), more)
 
 
-def _phases(p: ScenePlan) -> list[decks.Deck]:
-    """The phases. added, removed: names of walls; bodies: table of the spheres that come at the begin of a phase."""
-    return [
-        phase.but(
-            motions=motions(p, phase),
-            bodies=bodies_file(p, phase.name),
-            fills=fills(p, phase),
-            stop=stop(p, phase),
-            void=void(p, phase),
+@dataclass(frozen=True)
+class PhaseCommands:
+    """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it, looked at
+    after so many steps. void: formula of the height of the void in the bed that is pressed; "": none is.
+    """
+
+    run: PhaseSteps
+    motions: tuple[Move, ...]
+    bodies: str
+    fills: tuple[Fill, ...]
+    stop: tuple[str, int] | None
+    void: str
+
+
+@dataclass(frozen=True)
+class SceneDeck:
+    """Values of the template of a scene.
+
+    cell: sides of the periodic cell [m]. walls: that are there at the start, `late`: that come later. facets, planes:
+    whether a wall has triangles, or is YADE's own. placed: whether spheres are there at the start. low, high: of the
+    room [m], of a periodic one along z. sampling: steps between two calls of the recorder. loads: walls with the place
+    of their torque.
+    """
+
+    plan: ScenePlan
+    head: decks.Head
+    contact: ContactClasses
+    functors: Functors
+    cell: tuple[float, float, float]
+    walls: tuple[Wall, ...]
+    late: tuple[Wall, ...]
+    facets: bool
+    planes: bool
+    placed: bool
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    fall: float
+    skin: float
+    phases: tuple[PhaseCommands, ...]
+    fills: bool
+    motions: tuple[Move, ...]
+    sampling: int
+    works: tuple[str, ...]
+    loads: tuple[tuple[str, Sequence[float] | None], ...]
+
+
+def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
+    for run in p.phase_steps:
+        yield PhaseCommands(
+            run=run,
+            motions=motions(p, run.phase),
+            bodies=bodies_file(p, run.name),
+            fills=tuple(fills(p, run.phase)),
+            stop=stop(p, run),
+            void=void(p, run.name),
         )
-        for _, phase, _ in phases(p)
-    ]
 
 
 def _placed(p: ScenePlan) -> bool:
@@ -117,26 +166,23 @@ def _placed(p: ScenePlan) -> bool:
     return bool(p.scene.table) or any(f.phase == first and f.rate is None for f in p.insertions)
 
 
-def deck(p: ScenePlan) -> decks.Deck:
+def deck(p: ScenePlan) -> SceneDeck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     refuse(p)
-    m, friction, every_phase, every_wall = p.model, p.model.friction, _phases(p), walls(p)
+    m, friction, phases, every_wall = p.model, p.model.friction, tuple(_phases(p)), walls(p)
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
     every_step = p.row_columns or p.work_rows or any(mesh.wear for mesh in p.scene.meshes.values())
-    return decks.Deck(
-        p,
-        title=p.case.case.title,
-        source=p.case.case.source,
-        law=m.law,
-        native=False,
-        functors=_functors(p, friction),
-        materials=_materials(p, friction),
-        periodic=p.scene.periodic,
+    functors = _functors(p, friction)
+    return SceneDeck(
+        plan=p,
+        head=scene_head(p),
+        contact=ContactClasses(m.law, functors, _materials(p, friction)),
+        functors=functors,
         cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
-        walls=[every_wall[name] for name in every_wall if name in there],
-        late=[every_wall[name] for name in every_wall if name not in there],
+        walls=tuple(wall for name, wall in every_wall.items() if name in there),
+        late=tuple(wall for name, wall in every_wall.items() if name not in there),
         facets=any(wall.file for wall in every_wall.values()),
         planes=any(not wall.file for wall in every_wall.values()),
         placed=_placed(p),
@@ -144,13 +190,12 @@ def deck(p: ScenePlan) -> decks.Deck:
         high=(*(high for _, high in sides), zhi),
         fall=-p.scene.gravity if p.scene.gravity else 0.0,
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
-        phases=every_phase,
-        fills=any(phase.fills for phase in every_phase),
-        motions=[motion for phase in every_phase for motion in phase.motions],
+        phases=phases,
+        fills=any(phase.fills for phase in phases),
+        motions=tuple(motion for phase in phases for motion in phase.motions),
         sampling=1 if every_step else p.sampling if p.measured_walls else p.every,
-        spins=m.spins,
-        works=[WORKS[name] for name in p.works if name in WORKS],
-        loads=loads(p),
+        works=tuple(WORKS[name] for name in p.works if name in WORKS),
+        loads=tuple(loads(p)),
     )
 
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ...base import rendering as decks
-from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, Upright, VibrateMove
+from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, Upright, Vector3, VibrateMove
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.filling import Insertion
-from ...scenes.plan import ScenePlan
+from ...scenes.plan import Phase, PhaseSteps, ScenePlan
 from ...scenes.walls import spans, surface_rotation
 from ..input_script import first_look, torque_origin, void_height
 
@@ -38,6 +38,25 @@ class Wall:
     axis: int = 0
     place: float = 0.0
     file: str = ""
+
+
+@dataclass(frozen=True)
+class Fill:
+    """Spheres that come during a phase at places that the run finds.
+
+    key: place of their number in the case. file: their sizes. circle: centre and radius of a round region. batch: of
+    the spheres that come every `every` steps; 0: all come at the begin.
+    """
+
+    key: str
+    file: str
+    seed: int
+    low: Sequence[float]
+    high: Sequence[float]
+    circle: Sequence[float] | None
+    velocity: Vector3
+    batch: float
+    every: int
 
 
 def refuse(p: ScenePlan) -> None:
@@ -90,7 +109,7 @@ def _planes(p: ScenePlan) -> dict[str, PlaneWall]:
     return {w.name: w for w in (*p.scene.planes, *p.scene.gates)}
 
 
-def motions(p: ScenePlan, phase: decks.Deck) -> tuple[Move, ...]:
+def motions(p: ScenePlan, phase: Phase) -> tuple[Move, ...]:
     """What moves in a phase. A surface that turns is a wall of revolution that turns."""
     found = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
     return tuple((found | phase.moves).values())
@@ -102,20 +121,23 @@ def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
     return [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.measured_walls]
 
 
-def fills(p: ScenePlan, phase: decks.Deck) -> list[decks.Deck]:
-    """The spheres that come during a phase at places that the run finds.
-
-    batch: of the spheres that come every `every` steps; 0: all come at the begin. file: their sizes.
-    """
-    step, found = phase.time_step, []
+def fills(p: ScenePlan, phase: Phase) -> Iterator[Fill]:
+    """The spheres that come during a phase at places that the run finds."""
+    step = phase.time_step
     for n, f in _late(p):
         if f.phase == phase.name:
             every = max(1, math.ceil(f.period / step)) if f.rate else 1
-            values = {"file": f"fill{n}.txt", "seed": p.case.numerics.seed + n, "every": every}
-            values |= {"low": f.region.limits[0::2], "high": f.region.limits[1::2]}
-            values["circle"] = (*f.region.center, f.region.radius) if isinstance(f.region, Upright) else None
-            found.append(decks.Deck(f, batch=f.rate * every * step if f.rate else 0.0, **values))
-    return found
+            yield Fill(
+                key=f.key,
+                file=f"fill{n}.txt",
+                seed=p.case.numerics.seed + n,
+                low=f.region.limits[0::2],
+                high=f.region.limits[1::2],
+                circle=(*f.region.center, f.region.radius) if isinstance(f.region, Upright) else None,
+                velocity=f.velocity,
+                batch=f.rate * every * step if f.rate else 0.0,
+                every=every,
+            )
 
 
 def _late(p: ScenePlan) -> Iterator[tuple[int, Insertion]]:
@@ -129,9 +151,9 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
     return f"spheres_{phase}.txt" if any(b.phase == phase for b in p.scene.later) else ""
 
 
-def stop(p: ScenePlan, phase: decks.Deck) -> tuple[str, int] | None:
+def stop(p: ScenePlan, run: PhaseSteps) -> tuple[str, int] | None:
     """The condition on a row that may end a phase early, looked at in rows more than so many steps from its begin."""
-    until = phase.case.condition
+    until = run.phase.case.condition
     if until is None:
         return None
     limit = decks.number(until.limit)
@@ -141,12 +163,12 @@ def stop(p: ScenePlan, phase: decks.Deck) -> tuple[str, int] | None:
         condition = f'row["particles"] <= {limit}'
     else:
         condition = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"]) >= {limit}'
-    return condition, first_look(p, phase)
+    return condition, first_look(p, run)
 
 
-def void(p: ScenePlan, phase: decks.Deck) -> str:
+def void(p: ScenePlan, phase: str) -> str:
     """Formula of the height of the void in the bed that is pressed in a phase; "": none is."""
-    beds = [bed for bed in p.pressed if bed.phase == phase.name]
+    beds = [bed for bed in p.pressed if bed.phase == phase]
     return next((void_height(bed, f'O.bodies[walls["{bed.wall}"][0]].state.pos[{bed.axis}]') for bed in beds), "")
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pairs of spheres for LAMMPS in variants of the set-up with the same physics."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +17,9 @@ __all__ = ["VARIANTS", "velocities"]
 
 def velocities(tool: Lammps, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    deck = tool.deck(pairs.plan).but(path="out.txt")
+    deck = replace(tool.deck(pairs.plan), path="out.txt")
     texts = {f"in.{k}": text for k, text in enumerate(scripts(deck, pairs, variant, "lammps"))}
-    write_texts(folder, texts | {deck.data: data(pairs, deck, variant == "swap")})
+    write_texts(folder, texts | {deck.data: data(pairs, deck.types, variant == "swap")})
     for k in range(len(texts)):
         launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
     v = frames(folder / deck.path, 1, 2 * pairs.plan.n).reshape(2, pairs.plan.n, 3)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pairs of spheres for LIGGGHTS in variants of the set-up with the same physics."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,16 +24,16 @@ def _box(pairs: Pairs) -> list[tuple[float, float]]:
     return [(-s, s), (-s, float(y.max()) + s), (-s, s)]
 
 
-def data(pairs: Pairs, deck: decks.Deck, swap: bool) -> str:
+def data(pairs: Pairs, types: Sequence[str], swap: bool) -> str:
     """The data file of the pairs; `swap`: the targets have the lower ids."""
     groups = [
-        Spheres(1 + deck.types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
+        Spheres(1 + types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
         for g in pairs.ordered(swap)
     ]
-    return text("pairs", len(deck.types), _box(pairs), groups)
+    return text("pairs", len(types), _box(pairs), groups)
 
 
-def scripts(deck: decks.Deck, pairs: Pairs, variant: str, engine: str = "liggghts") -> list[str]:
+def scripts(deck: object, pairs: Pairs, variant: str, engine: str = "liggghts") -> list[str]:
     """The decks of a variant in the order in which they run."""
     steps = pairs.plan.steps
     context: dict[str, Any] = {
@@ -59,9 +61,9 @@ def ranks_of(variant: str) -> int:
 
 def velocities(tool: Liggghts, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    deck = tool.deck(pairs.plan).but(path="out.bin")
+    deck = replace(tool.deck(pairs.plan), path="out.bin")
     texts = {f"in.{k}": text for k, text in enumerate(scripts(deck, pairs, variant))}
-    write_texts(folder, texts | {deck.data: data(pairs, deck, variant == "swap")})
+    write_texts(folder, texts | {deck.data: data(pairs, deck.types, variant == "swap")})
     for k in range(len(texts)):
         (folder / deck.path).unlink(missing_ok=True)
         launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)

@@ -8,8 +8,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.processes import call
-from ...base.rendering import Deck
-from ...engines.yade.engine import Yade
+from ...engines.yade.engine import ImpactDeck, Yade
 from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
 from ...impacts.plan import Group
@@ -23,7 +22,7 @@ def _sides(pairs: Pairs, variant: str) -> dict[str, Group]:
     return {f"side{k}.data": side for k, side in enumerate(pairs.ordered(variant == "swap"))}
 
 
-def scripts(deck: Deck, pairs: Pairs, variant: str) -> list[str]:
+def scripts(deck: ImpactDeck, pairs: Pairs, variant: str) -> list[str]:
     """The scripts of a variant in the order in which they run."""
     steps = pairs.plan.steps
     context: dict[str, Any] = {
@@ -47,7 +46,7 @@ def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     deck = tool.deck(pairs.plan)
     folder.mkdir(parents=True, exist_ok=True)
-    if not deck.native:
+    if not deck.contact.native:
         write_deck_modules(folder, classes=tool.classes)
     for name, side in _sides(pairs, variant).items():
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]

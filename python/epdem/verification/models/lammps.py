@@ -7,7 +7,7 @@ from typing import Any
 
 from ...base import rendering as decks
 from ...engines.lammps import launcher
-from ...engines.lammps.engine import END, PATH, Lammps
+from ...engines.lammps.engine import ImpactDeck, Lammps
 from ...impacts.engine import check_features
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
@@ -35,26 +35,22 @@ class LammpsMdr(Lammps):
     def note(self, x: Experiment) -> str:
         return predictions.mdr_note(x)
 
-    def deck(self, plan: Plan) -> decks.Deck:
+    def deck(self, plan: Plan) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for cases outside mdr."""
         x = plan.experiment
         check_features(self, x)
         law = predictions.mdr(x)
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
-        return decks.Deck(
-            plan,
-            title=x.title,
-            source=x.source,
-            summary=f"{plan.summary}, LAMMPS's mdr",
+        return ImpactDeck(
+            plan=plan,
+            head=decks.Head(x.title, x.source, f"{plan.summary}, LAMMPS's mdr"),
             data="impact.data",
             skin=0.2 * x.body.radius,
             types=(x.body.material,),
             pairs=(contact,),
             wall=contact,
             oblique=False,
-            path=PATH,
-            end=END,
         )
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:

@@ -6,8 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...base.rendering import Deck
-from ...engines.liggghts.engine import Liggghts
+from ...engines.liggghts.engine import ImpactDeck, Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
@@ -80,8 +79,9 @@ class _OwnTheory(Liggghts):
         path = super().run(job, folder, ranks=ranks, report=report)
         return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
-    def deck(self, plan: Plan) -> Deck:
-        return super().deck(plan).but(has_history=True)
+    def deck(self, plan: Plan) -> ImpactDeck:
+        deck = super().deck(plan)
+        return replace(deck, contact=replace(deck.contact, has_history=True))
 
 
 class BuiltinLuding(_OwnTheory):

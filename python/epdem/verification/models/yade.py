@@ -2,27 +2,17 @@
 """YADE's own Luding law on the same plans, for comparison."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...base.rendering import Deck
 from ...engines.yade.classes import Material
-from ...engines.yade.engine import Yade
+from ...engines.yade.engine import Anvil, ImpactDeck, Yade
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
 from ...jobs.engine import Report, silent
 from . import predictions
-
-
-@dataclass(frozen=True)
-class Anvil:
-    """A fixed sphere under each body, its centre at z [m]: it replaces the wall, for YADE's law has spheres only."""
-
-    radius: float
-    material: str
-    z: float
 
 
 class YadeLuding(Yade):
@@ -62,9 +52,10 @@ class YadeLuding(Yade):
         }
         return Material(body.material, values)
 
-    def deck(self, plan: Plan) -> Deck:
+    def deck(self, plan: Plan) -> ImpactDeck:
         x, deck = plan.experiment, super().deck(plan)
         anvil = None
         if deck.wall_material:
             anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
-        return deck.but(law="Luding", functors=None, rigid=False, wall_material=None, anvil=anvil)
+        contact = replace(deck.contact, law="Luding", functors=None)
+        return replace(deck, contact=contact, rigid=False, wall_material=None, anvil=anvil)

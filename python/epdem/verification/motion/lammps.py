@@ -2,6 +2,7 @@
 """Prescribed motions of two spheres in LAMMPS: every step sets both, then runs once."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +39,8 @@ def files(touch: Touch, motion: Motion) -> dict[str, str]:
     plain = Lammps().deck(touch.plan(motion))
     friction = f" tangential {touch.tangential} {decks.number(touch.friction)}"
     pairs = tuple(words.partition(" tangential ")[0] + friction for words in plain.pairs)
-    deck = plain.but(summary=summary(touch, motion), data=DATA, pairs=pairs, path="path.txt")
+    head = replace(plain.head, summary=summary(touch, motion))
+    deck = replace(plain, head=head, data=DATA, pairs=pairs, path="path.txt")
     return {
         DECK: decks.render("verification/lammps/motion.in.j2", deck=deck, steps=STEPS),
         STEPS: "".join(_steps(motion)),

@@ -2,6 +2,7 @@
 """Prescribed motions of two spheres in LIGGGHTS: every step sets both, then runs once."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines import input_script
 from ...engines.liggghts import dump, launcher
-from ...engines.liggghts.engine import Liggghts
+from ...engines.liggghts.engine import ImpactDeck, Liggghts
 from ...engines.liggghts.properties import per_pair, tangential
 from ...errors import EngineError
 from .prescribed import Loads, Motion, Touch, summary
@@ -43,17 +44,18 @@ class LiggghtsMotions:
         return Loads(found[:, :, 0], found[:, :, 1])
 
 
-def deck(touch: Touch, motion: Motion) -> decks.Deck:
+def deck(touch: Touch, motion: Motion) -> ImpactDeck:
     """The deck of a motion. Raises CaseError for what LIGGGHTS cannot do."""
     plain = Liggghts().deck(touch.plan(motion))
-    return plain.but(
-        summary=summary(touch, motion),
+    friction = per_pair("coefficientFriction", len(plain.types), touch.friction, "-")
+    contact = replace(
+        plain.contact,
         has_history=True,
-        data=DATA,
-        properties=(*plain.properties, per_pair("coefficientFriction", len(plain.types), touch.friction, "-")),
+        properties=(*plain.contact.properties, friction),
         tangential=tangential(touch.tangential),
-        path="path.bin",
     )
+    head = replace(plain.head, summary=summary(touch, motion))
+    return replace(plain, head=head, contact=contact, data=DATA, path="path.bin")
 
 
 def files(touch: Touch, motion: Motion) -> dict[str, str]:

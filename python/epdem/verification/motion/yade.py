@@ -10,9 +10,8 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call
-from ...base.rendering import Deck
 from ...engines.yade.classes import Material, settings
-from ...engines.yade.engine import Yade
+from ...engines.yade.engine import ImpactDeck, Yade
 from ...engines.yade.launcher import BUILD, command, environment, write_deck_modules
 from ...errors import EngineError
 from .prescribed import Loads, Motion, Touch, summary
@@ -48,16 +47,17 @@ class YadeMotions:
         return Loads(found[:, :, 0], found[:, :, 1], table[:, 0])
 
 
-def deck(touch: Touch, motion: Motion) -> Deck:
+def deck(touch: Touch, motion: Motion) -> ImpactDeck:
     """The deck of a motion. Raises CaseError for what YADE cannot do."""
     plain = Yade().deck(touch.plan(motion))
     friction = {"frictionAngle": math.atan(touch.friction)}
-    return plain.but(
-        summary=summary(touch, motion),
-        materials=tuple(Material(m.name, {**m.values, **friction}) for m in plain.materials),
-        functors=replace(plain.functors, settings=settings(touch.tangential)),
-        path="path.npy",
+    assert plain.contact.functors is not None  # `missing` says so
+    contact = replace(
+        plain.contact,
+        materials=tuple(Material(m.name, {**m.values, **friction}) for m in plain.contact.materials),
+        functors=replace(plain.contact.functors, settings=settings(touch.tangential)),
     )
+    return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), contact=contact, path="path.npy")
 
 
 def files(touch: Touch, motion: Motion) -> dict[str, str]:
