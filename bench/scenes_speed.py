@@ -19,6 +19,7 @@ import resource
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -55,19 +56,22 @@ def files(case: Path, model: str) -> dict[str, str]:
     if model != "hertz":
         return scene_deck.files(p)
     d = scene_deck.deck(p)
-    properties = d.properties
+    properties, settings = d.contact.properties, d.contact.settings
     if not any(x.name == "coefficientRestitution" for x in properties):
-        properties = (*properties, per_pair("coefficientRestitution", d.n_types, 0.5, "-"))
-    of_hertz = d.but(
-        model="hertz",
-        properties=properties,
-        settings=tuple(s for s in d.settings if not re.match("computePlasticWork|computeContactStrain", s)),
+        properties = (*properties, per_pair("coefficientRestitution", len(p.types), 0.5, "-"))
+    of_hertz = replace(
+        d,
+        contact=replace(
+            d.contact,
+            model="hertz",
+            properties=properties,
+            settings=tuple(s for s in settings if not re.match("computePlasticWork|computeContactStrain", s)),
+        ),
         row_words=tuple(word for word in d.row_words if not word.startswith("c_ratio")),
         contact_columns=scene_deck.contact_columns((), 0, 1),
         wall_contact_columns=scene_deck.contact_columns((), 0, 2),
         history_columns=(),
-        yields=False,
-        work_words=[],
+        work_words=(),
     )
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
     texts = {name: rendering.render(template, deck=of_hertz) for name, template in names.items()}

@@ -119,7 +119,7 @@ def test_the_spheres_of_a_file_are_as_stored(tmp_path):
 
 def test_the_deck_of_a_continued_scene_is_as_stored():
     d = scene_deck.deck(scene_plan(load_scene(CASES / "compaction_powder.toml")))
-    d = d.but(from_restart="restart.31200.bin", resumed_phase=1)
+    d = replace(d, from_restart="restart.31200.bin", resumed_phase=1)
     compare(HERE, "compaction_powder_resumed", deck.render("liggghts/scene_resume.in.j2", deck=d))
 
 

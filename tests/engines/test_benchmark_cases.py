@@ -43,9 +43,10 @@ def test_elastic_peaks_are_hertzs(name, E_star, R_star, m_star, v, tmp_path):
 
 def matrix(deck, name):
     """A property of pairs, by the names of two types."""
-    n, *full = next(p.values for p in deck.properties if p.name == name)
-    assert n == len(deck.types)
-    return {(a, b): full[i * len(deck.types) + j] for i, a in enumerate(deck.types) for j, b in enumerate(deck.types)}
+    n, *full = next(p.values for p in deck.contact.properties if p.name == name)
+    types = deck.plan.types
+    assert n == len(types)
+    return {(a, b): full[i * len(types) + j] for i, a in enumerate(types) for j, b in enumerate(types)}
 
 
 DOSTA = {  # Dosta et al. 2024: spheres, steps [s], restitution, friction
@@ -74,7 +75,7 @@ def test_scenes_of_the_benchmark_have_its_numbers(about, pairs):
     p = plan(load(CASES / f"{name}.toml"))
     deck = scene_deck.deck(p)
     assert (p.count, p.time_step) == (spheres, step)
-    assert deck.settings == ("viscous on", "computeContactStrain on")  # with the tangential dashpot
+    assert deck.contact.settings == ("viscous on", "computeContactStrain on")  # with the tangential dashpot
     restitution, friction = (matrix(deck, f"coefficient{key}") for key in ("Restitution", "Friction"))
     for (a, b), expected in pairs.items():
         assert (restitution[a, b], friction[a, b]) == (restitution[b, a], friction[b, a]) == expected

@@ -196,7 +196,7 @@ PIECES += ["{% macro m() %}{{ m() }}{% endmacro %}{{ m() }}", "{% set x = deck %
 PIECES += [
     "{% import 'liggghts/macros.j2' as m %}",
     "{{ case.materials | length }}",
-    "{{ deck.title | upper }}",
+    "{{ deck.head.title | upper }}",
     "{% raw %}",
 ]
 

@@ -66,9 +66,9 @@ def test_a_deck_with_rare_options_runs_and_repeats_itself(data, tmp_path):
 
 def test_the_walls_keep_their_material_whatever_the_order_of_types():
     d = deck(plan(parse(bed())))
-    strength = next(p for p in d.properties if p.name == "yieldPressure")
-    assert d.types == ("plate", "shot")
-    assert d.types[d.wall_type - 1] == "plate"
+    strength = next(p for p in d.contact.properties if p.name == "yieldPressure")
+    types = d.plan.types
+    assert types == ("plate", "shot") and {types[wall.type - 1] for wall in (*d.planes, *d.meshes)} == {"plate"}
     assert strength.values[0] < strength.values[1]
 
 

@@ -21,7 +21,7 @@ boundary f f f
 newton off
 communicate single vel yes
 region box block -0.01 0.01 -0.01 0.01 0 {{ height }} units box
-create_box {{ deck.n_types }} box
+create_box {{ deck.plan.types | length }} box
 neighbor {{ deck.skin | number }} bin
 neigh_modify delay 0
 {{ macros.properties(deck) }}
@@ -29,7 +29,7 @@ neigh_modify delay 0
 {{ macros.wall(deck, "bottom", "primitive type 1 zplane 0.0") }}
 fix motion all nve/sphere
 fix gravity all gravity 9.81 vector 0 0 -1
-timestep {{ deck.time_step | number }}
+timestep {{ deck.plan.time_step | number }}
 create_atoms 1 single 0 0 {{ 0.5 * height }} units box
 set group all diameter 0.002 density 2500
 thermo {{ steps }}
@@ -106,7 +106,7 @@ HOSTILE = {
     "{{ cycler.__init__.__globals__.os.popen('touch HERE/pwned') }}": "unsafe",
     "{{ deck.__class__.__mro__ }}": "unsafe",
     "{{ case.parse_raw('x', proto='pickle', allow_pickle=True) }}": "not safely callable",
-    "{{ deck.time_step.tofile('HERE/pwned') }}": "no attribute 'tofile'",
+    "{{ deck.plan.time_step.tofile('HERE/pwned') }}": "no attribute 'tofile'",
     "{% include '../outside.j2' %}": "outside.j2 is not in",
     "{% include '/etc/hostname' %}": "is not in",
     "{{ 1/0 }}": "division by zero",
@@ -146,7 +146,7 @@ def test_a_template_may_take_in_its_neighbours_and_a_mistake_there_names_them(tm
 
 def test_the_command_ends_with_2_and_the_sentence(tmp_path):
     own = tmp_path / "own.in.j2"
-    own.write_text("{{ deck.title.nothing }}")
+    own.write_text("{{ deck.head.title.nothing }}")
     words = [sys.executable, "-m", "epdem", "deck", "own.in.j2", "--case", str(STEEL), "--out", "out"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.startswith("epdem: own.in.j2:1: "), done.stderr

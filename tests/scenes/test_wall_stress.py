@@ -139,7 +139,7 @@ def test_each_sphere_wears_each_wall_by_the_constant_of_the_wall_or_the_case_is_
     worn = {name: float(w.split()[0]) for name, w in zip(("left", "right"), wears, strict=True) if w}
     pairs = [({walls[name == "right"], sphere}, value) for name, value in worn.items() for sphere in spheres]
     try:
-        found = [x.values for x in scene_deck.deck(p).properties if x.name == "k_finnie"]
+        found = [x.values for x in scene_deck.deck(p).contact.properties if x.name == "k_finnie"]
     except CaseError:
         assert any(a == b and x != y for a, x in pairs for b, y in pairs)
         return

@@ -135,7 +135,7 @@ def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two():
     data = parts() | {"contact": {"friction": 0.3, "wall_friction": 0.6}}
     found = scene_deck.deck(plan(parse(data)))
     angles = dict.fromkeys([(0, 0)], math.atan(0.3)) | dict.fromkeys([(0, 1), (1, 1)], math.atan(0.6))
-    (friction,) = [v for v in found.functors.pairs if v.name == "frictAngle"]
+    (friction,) = [v for v in found.contact.functors.pairs if v.name == "frictAngle"]
     assert friction.matches == tuple((*pair, pytest.approx(angle)) for pair, angle in angles.items())
 
 

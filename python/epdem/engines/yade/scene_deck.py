@@ -129,7 +129,6 @@ class SceneDeck:
     plan: ScenePlan
     head: decks.Head
     contact: ContactClasses
-    functors: Functors
     cell: tuple[float, float, float]
     walls: tuple[Wall, ...]
     late: tuple[Wall, ...]
@@ -174,12 +173,10 @@ def deck(p: ScenePlan) -> SceneDeck:
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
     every_step = p.row_columns or p.work_rows or any(mesh.wear for mesh in p.scene.meshes.values())
-    functors = _functors(p, friction)
     return SceneDeck(
         plan=p,
         head=scene_head(p),
-        contact=ContactClasses(m.law, functors, _materials(p, friction)),
-        functors=functors,
+        contact=ContactClasses(m.law, _functors(p, friction), _materials(p, friction)),
         cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
         walls=tuple(wall for name, wall in every_wall.items() if name in there),
         late=tuple(wall for name, wall in every_wall.items() if name not in there),
