@@ -25,6 +25,7 @@ from .sizes import Count, Mixture, Particles, refuse_shares
 from .toml import KIND, text_of
 
 BODY = "[scene]"  # the line at which the TOML of parts begins
+MOST = 32  # values of a key that is a list
 TYPES: dict[str, Any] = {"particles": Mixture, "count": Count, "material": Name, "bool": bool}
 
 
@@ -75,6 +76,8 @@ def _annotation(head: dict[str, Any]) -> tuple[Any, Any]:
     found: Any = TYPES[head["type"]] if "type" in head else Annotated[float, Quantity(head["unit"], **limits)]
     if "values" in head:
         found = Annotated[list[found], Field(min_length=head["values"], max_length=head["values"])]
+    if head.get("list"):
+        found = Annotated[list[found], Field(min_length=1, max_length=MOST)]
     if head.get("optional"):
         return found | None, None
     return found, head.get("default", ...)
@@ -134,7 +137,7 @@ def _refuse(text: str) -> None:
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "refuse": _refuse,
     "rounded": lambda x: float(f"{x:.10g}"),
-    **{name: getattr(math, name) for name in ("tan", "sqrt", "hypot")},
+    **{name: getattr(math, name) for name in ("pi", "tan", "sqrt", "hypot")},
 }
 
 

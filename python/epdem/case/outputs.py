@@ -88,4 +88,20 @@ class Press(Frozen):
     position: PartName
 
 
+class Stages(Frozen):
+    """The table of a press has the end of each phase from the first in which `wall` moves towards the plane `against`.
+
+    area: of the bed across. pressure, opposite: rows of the pressure on both. sides: walls around the bed, whose length
+    around is `perimeter`.
+    """
+
+    wall: PartName
+    against: PartName
+    area: Annotated[float, Quantity("m^2", above=0.0)]
+    pressure: PartName
+    opposite: PartName
+    sides: list[PartName] = Field(default_factory=list, max_length=8)
+    perimeter: Length | None = None
+
+
 Check = Annotated[FloorLoad | BedRebound | MassFlow | ReboundSpeed | Press, Field(discriminator="kind")]

@@ -10,7 +10,7 @@ from pydantic import Field, Tag, model_validator
 
 from ..base.tables import Quantity as Column
 from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, nothing
-from .outputs import Check, Row
+from .outputs import Check, Row, Stages
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
 from .walls import (
     Axis,
@@ -259,6 +259,7 @@ class Parts(Frozen):
     measure: list[Measure] = Field(default_factory=list, max_length=64)
     row: list[Row] = Field(default_factory=list, max_length=64)
     check: list[Check] = Field(default_factory=list, max_length=64)
+    stages: Stages | None = None
     key_figure: list[Name] = Field(default_factory=list, max_length=4)
     highest_fall: Annotated[float, Quantity("m", ge=0.0)] | None = None
     highest_drive: Annotated[float, Quantity("m/s", ge=0.0)] | None = None

@@ -334,28 +334,32 @@ class Until(Frozen):
     """What ends a phase before its duration, looked at in every row from `after` on (a tenth of the duration).
 
     kinetic_energy: of a sphere, the mean is below. count: so few spheres are in the room. force: mean force of a row on
-    `wall` is reached. travel: way of `wall`, which moves with a constant velocity.
+    `wall` is reached; force_below: the force has fallen to it. travel: way of `wall`, which moves with a constant
+    velocity.
     """
 
     kinetic_energy: Annotated[float, Quantity("J", above=0.0)] | None = None
     count: Annotated[int, Field(ge=0)] | None = None
     wall: PartName | None = None
     force: Force | None = None
+    force_below: Force | None = None
     travel: Annotated[float, Quantity("m", above=0.0)] | None = None
     after: Annotated[float, Quantity("s", ge=0.0)] | None = None
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        if sum(x is not None for x in (self.kinetic_energy, self.count, self.force, self.travel)) != 1:
-            raise ValueError("give one of kinetic_energy, count, force and travel")
-        if (self.wall is None) != (self.force is None and self.travel is None):
-            raise ValueError("'wall' belongs to force and travel, and only to them")
+        of_wall = (self.force, self.force_below, self.travel)
+        if sum(x is not None for x in (self.kinetic_energy, self.count, *of_wall)) != 1:
+            raise ValueError("give one of kinetic_energy, count, force, force_below and travel")
+        if (self.wall is None) != all(x is None for x in of_wall):
+            raise ValueError("'wall' belongs to force, force_below and travel, and only to them")
         return self
 
     @property
     def limit(self) -> float:
         """The value of the one condition: [J], number of spheres, [N] or [m]."""
-        return float(next(x for x in (self.kinetic_energy, self.count, self.force, self.travel) if x is not None))
+        values = (self.kinetic_energy, self.count, self.force, self.force_below, self.travel)
+        return float(next(x for x in values if x is not None))
 
 
 class Phase(Frozen):

@@ -156,7 +156,8 @@ def stop_condition(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], 
         formula, sign = "atoms", "<="
     else:
         load = f"f_load{1 + p.measured_walls.index(until.wall or '')}"
-        formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
+        formula = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")"
+        sign = ">=" if until.force else "<="
     return StopCondition(first, (run.steps - first) // p.every, formula, f"{sign} {number(until.limit)}", void)
 
 

@@ -80,6 +80,15 @@ COLUMNS = {
     "work": Quantity("J", "work of the walls on the spheres so far"),
     "left": Quantity("J", "energy of the spheres that left the room"),
     "balance": Quantity("J", "sum of all energies less the work of the walls, above its first value"),
+    # stages of a press
+    "pressure": Quantity("Pa", "pressure on the punch, mean of the last row of the phase"),
+    "opposite_pressure": Quantity("Pa", "pressure on the plane that it presses against, likewise"),
+    "height": Quantity("m", "height of the bed at the end of the phase"),
+    "relative_density": Quantity("", "volume of the spheres over that of the bed"),
+    "porosity": Quantity("", "1 less the relative density"),
+    "springback": Quantity("", "axial strain since the end of the last phase of loading"),
+    "radial_pressure": Quantity("Pa", "mean normal force on the sides over their area"),
+    "radial_over_axial": Quantity("", "radial pressure over the mean of both axial ones"),
     # phases
     "phase": Quantity("", "name of the phase"),
     "begin": Quantity("", "first step of the phase"),

@@ -18,7 +18,7 @@ from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from ..report.page import Picture
-from . import checks, pictures
+from . import checks, pictures, stages
 from .columns import LOADS, last_frame, units
 from .measures import curve, values_of
 from .plan import ScenePlan
@@ -177,6 +177,34 @@ def _press(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(Axis(f"displacement of the {row.wall}", "m"), Axis(press.force, "N"), series)]
 
 
+def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """Relative density against pressure, and the ends of the phases."""
+    pressure, density = tables["rows"][p.scene.stages.pressure], stages.densities(p, tables)  # type: ignore[union-attr]
+    ends = tables["stages"]
+    series = [
+        Series("press", pressure.to_numpy(), density, 0),
+        Series("ends of phases", ends["pressure"].to_numpy(), ends["relative_density"].to_numpy(), INK, None, 0),
+    ]
+    return [Panel(Axis("pressure", "Pa"), Axis("relative density"), series)]
+
+
+def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """ln 1/(1-D) against the largest pressure so far, and Heckel's line through the ends of loading.
+
+    Heckel 1961, Trans. Metall. Soc. AIME 221, 671; the slope is the inverse of an apparent yield pressure.
+    """
+    pressure, density = tables["rows"][p.scene.stages.pressure], stages.densities(p, tables)  # type: ignore[union-attr]
+    rising = ((pressure >= pressure.cummax()) & (pressure > 0.0)).to_numpy() & (density < 1.0)
+    series = [Series("press", pressure.to_numpy()[rising], -np.log(1.0 - density[rising]), 0)]
+    ends = stages.loaded(p, tables["stages"])
+    if len(ends) > 1:
+        x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].clip(lower=1e-3).to_numpy())
+        slope, begin = np.polyfit(x, y, 1)
+        name = f"Heckel, 1/slope = {1.0 / slope:.3g} Pa"
+        series.append(Series(name, x, begin + slope * x, INK, "dash"))
+    return [Panel(Axis("pressure", "Pa"), Axis("ln 1/(1 - relative density)"), series)]
+
+
 def _column(p: ScenePlan, tables: Tables, name: str) -> list[Panel]:
     """A column of the rows against time."""
     rows, unit = tables["rows"], next(row.unit for row in p.scene.row if row.name == name)
@@ -242,6 +270,11 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     return found
 
 
+OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
+    "press": _press,
+    "densification": _densification,
+    "heckel": _heckel,
+}
 OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
     "mass_flow": _mass_flow,
     "rebound_speed": _rebound_speed,
@@ -255,8 +288,8 @@ def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
     found: list[Panel] = []
     for name in p.scene.key_figure:
-        if name == "press":
-            found += _press(p, tables)
+        if name in OF_ROWS:
+            found += OF_ROWS[name](p, tables)
         elif name not in OF_FRAMES:
             found += _column(p, tables, name)
         elif frames:
@@ -291,6 +324,7 @@ def as_json(outcome: SceneOutcome) -> str:
             "warnings": outcome.warnings,
             "checks": records(tables["checks"]),
             "measures": measured,
+            "stages": records(tables["stages"]) if "stages" in tables else [],
             "last_row": records(tables["rows"].tail(1))[0],
             "units": units(tables["rows"]),
         },
@@ -304,6 +338,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     rows = checks.assign(ok=np.where(checks["passed"], "yes", "NO")).to_dict("records")
     show_table(console, make_table(outcome.case.case.title, CHECKED, rows, left=("check", "unit")))
     _show_measures(outcome, console)
+    _show_stages(outcome, console)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow")
     p, rows = outcome.plan, outcome.results.tables["rows"]
@@ -315,6 +350,20 @@ def show(outcome: SceneOutcome, console: Console) -> None:
         f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/report.html",
         soft_wrap=True,
     )
+
+
+def _show_stages(outcome: SceneOutcome, console: Console) -> None:
+    if "stages" not in outcome.results.tables:
+        return
+    stages = outcome.results.tables["stages"]
+    names = [name for name in stages if name not in ("phase", "step", "time", "porosity")]
+    known = units(stages)
+    heads = [f"{name} [{known[name]}]" if name in known else name for name in names]
+    shown = table("stages", ["phase", *heads], left=("phase",))
+    for stage in stages.to_dict("records"):
+        cells = ("" if math.isnan(stage[name]) else f"{stage[name]:.4g}" for name in names)
+        shown.add_row(str(stage["phase"]), *cells)
+    show_table(console, shown)
 
 
 def _show_measures(outcome: SceneOutcome, console: Console) -> None:

@@ -20,7 +20,7 @@ from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Report, silent
 from ..jobs.stage import Inputs, Stage, Tables, compute, inputs, parts_hash, without_comments
-from . import checks, measures, pictures, results
+from . import checks, measures, pictures, results, stages
 from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
@@ -190,6 +190,8 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
             )
         tables["energy_balance"] = checks.energy_balance(p, tables)
     tables["checks"] = checks.checks(p, tables)
+    if p.scene.stages:
+        tables["stages"] = stages.table(p, tables)
     if p.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])
         tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)

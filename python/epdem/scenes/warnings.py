@@ -11,7 +11,7 @@ from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
-from . import filling
+from . import filling, stages
 from .columns import STRAINS
 from .limits import dense_beds, largest_density, overlaps
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
@@ -66,7 +66,8 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
         "left (relative density 1), and the tables end there; reduce the force, or the duration of the phase"
         for phase in phases[phases["until"] == NO_VOID].head(1).to_dict("records")
     ]
-    return [*validity.finite_strain(largest, where), *no_void] + [
+    pressing = stages.warnings(p, tables) if "stages" in tables else []
+    return [*validity.finite_strain(largest, where), *no_void, *pressing] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
         for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")

@@ -162,7 +162,8 @@ def stop(p: ScenePlan, run: PhaseSteps) -> tuple[str, int] | None:
     elif until.count is not None:
         condition = f'row["particles"] <= {limit}'
     else:
-        condition = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"]) >= {limit}'
+        force = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])'
+        condition = f"{force} {'>=' if until.force else '<='} {limit}"
     return condition, first_look(p, run)
 
 

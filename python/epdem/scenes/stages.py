@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Stages of a press: pressure, height, density, springback and energies at the end of each phase."""
+
+import math
+
+import numpy as np
+import pandas as pd
+
+from ..case.outputs import Stages
+from .checks import work_of_walls
+from .columns import FORCE, NORMAL, place
+from .plan import Phase, ScenePlan
+
+SLOW = 1e-3  # inertial number below which a bed deforms as if at rest [GDR MiDi 2004, Eur. Phys. J. E 14, 341]
+Tables = dict[str, pd.DataFrame]
+
+
+def towards(p: ScenePlan, stages: Stages, phase: Phase) -> float:
+    """Speed [m/s] of the punch towards the plane that it presses against."""
+    axis, at = _plane(p, stages)
+    begin = p.triangles[stages.wall][0, 0, axis]
+    return phase.velocity(stages.wall)[axis] * math.copysign(1.0, at - begin)
+
+
+def _plane(p: ScenePlan, stages: Stages) -> tuple[int, float]:
+    return next(("xyz".index(w.axis), w.at) for w in p.scene.planes if w.name == stages.against)
+
+
+def heights(p: ScenePlan, stages: Stages, time: np.ndarray) -> np.ndarray:
+    """Height [m] of the bed between the punch and the plane at times [s]."""
+    axis, at = _plane(p, stages)
+    return np.abs(place(p, stages.wall, axis, time) - at)
+
+
+def volume(p: ScenePlan, tables: Tables) -> float:
+    """Volume of the spheres [m^3], of the last frame; without frames that of the plan."""
+    if "particles" in tables and not tables["particles"].empty:
+        spheres = tables["particles"]
+        radius = spheres[spheres["step"] == spheres["step"].max()]["radius"].to_numpy()
+        return float((4.0 / 3.0 * math.pi * radius**3).sum())
+    return next(bed.solid_height * bed.area for bed in p.beds)
+
+
+def densities(p: ScenePlan, tables: Tables) -> np.ndarray:
+    """Relative density of the bed in the middle of each row."""
+    stages = p.scene.stages
+    assert stages is not None
+    middle = p.time_at((tables["rows"]["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
+    return volume(p, tables) / (stages.area * heights(p, stages, middle))
+
+
+def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
+    """One row per phase from the first in which the punch moves towards the plane, SI.
+
+    pressure, opposite_pressure: means of the last row of the phase. springback: axial strain since the end of the last
+    phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase.
+    work, plastic, elastic: as in the energy balance.
+    """
+    stages = p.scene.stages
+    assert stages is not None
+    rows, phases = tables["rows"].set_index("step"), p.phase_table
+    speeds = [towards(p, stages, phase) for phase in p.phases]
+    first = next((n for n, speed in enumerate(speeds) if speed > 0.0), len(speeds))
+    chosen = phases.iloc[first:][phases.iloc[first:]["end"] > phases.iloc[first:]["begin"]]
+    ends = chosen["end"].to_numpy(int)
+    found = pd.DataFrame({"phase": chosen["phase"].to_numpy(), "step": ends, "time": chosen["end_time"].to_numpy()})
+    found["pressure"] = rows[stages.pressure].reindex(ends).to_numpy()
+    found["opposite_pressure"] = rows[stages.opposite].reindex(ends).to_numpy()
+    found["height"] = heights(p, stages, found["time"].to_numpy())
+    found["relative_density"] = volume(p, tables) / (stages.area * found["height"])
+    found["porosity"] = 1.0 - found["relative_density"]
+    pressed = np.array([speeds[n] > 0.0 for n in chosen.index])
+    loaded = found["height"].where(pressed).ffill()
+    away = np.array([speeds[n] < 0.0 for n in chosen.index])
+    found["springback"] = (found["height"] / loaded - 1.0).where(away)
+    if stages.sides and "contacts" in tables:
+        normal = _normal_forces(tables["contacts"], stages).reindex(ends, fill_value=0.0).to_numpy()
+        found["radial_pressure"] = normal / (stages.perimeter * found["height"])
+        axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
+        found["radial_over_axial"] = (found["radial_pressure"] / axial).where(axial > 0.0)
+    found["work"] = np.interp(ends, tables["rows"]["step"], work_of_walls(p, tables["rows"]))
+    if "energy_balance" in tables:
+        energies = tables["energy_balance"].set_index("step")
+        for name in ("plastic", "elastic"):
+            found[name] = energies[name].reindex(ends).to_numpy()
+    return found
+
+
+def loaded(p: ScenePlan, stages: pd.DataFrame) -> pd.DataFrame:
+    """The rows of the table for phases of loading."""
+    declared = p.scene.stages
+    assert declared is not None
+    names = [phase.name for phase in p.phases if towards(p, declared, phase) > 0.0]
+    return stages[stages["phase"].isin(names)]
+
+
+def _normal_forces(contacts: pd.DataFrame, stages: Stages) -> pd.Series:
+    """Sum of the normal forces on the sides [N] by step."""
+    at_sides = contacts[contacts["wall"].isin(stages.sides)]
+    normal = np.abs((at_sides[FORCE].to_numpy() * at_sides[NORMAL].to_numpy()).sum(axis=1))
+    return pd.Series(normal, at_sides["step"].to_numpy()).groupby(level=0).sum()
+
+
+def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
+    """Inertial number v/h d sqrt(rho/P) at the end of each phase in which the punch moves; h, P of that time."""
+    declared = p.scene.stages
+    assert declared is not None
+    speed = {phase.name: abs(towards(p, declared, phase)) for phase in p.phases}
+    density = min(p.case.materials[part.material].density for part in p.scene.filled)
+    rate = stages["phase"].map(speed) / stages["height"]
+    pressure = stages["pressure"].clip(lower=0.0)
+    moving = stages[(rate > 0.0) & (pressure > 0.0)].index
+    found: pd.Series = 2.0 * p.largest * rate[moving] * np.sqrt(density / pressure[moving])
+    return found
+
+
+def warnings(p: ScenePlan, tables: Tables) -> list[str]:
+    """A sentence for a press that is too fast for an even stress while it loads, and for spheres behind the punch."""
+    declared = p.scene.stages
+    assert declared is not None
+    found, numbers = [], inertial_numbers(p, loaded(p, tables["stages"]))
+    if not numbers.empty and numbers.max() > SLOW:
+        name = tables["stages"]["phase"][numbers.idxmax()]
+        speed = next(towards(p, declared, phase) for phase in p.phases if phase.name == name)
+        found.append(
+            f"phase {name}: the inertial number v/h d sqrt(rho/P) is {numbers.max():.2g}, above {SLOW:g}, so that "
+            f"inertia bears a part of the pressure; {speed * SLOW / numbers.max():.2g} m/s is slow enough"
+        )
+    if "particles" in tables and (behind := _behind(p, tables)):
+        found.append(
+            f"{behind} spheres have passed wall {declared.wall}, and pressures and densities are wrong: the force of a "
+            "contact with a hard wall grows up to an overlap of 0.9 radii; give the walls the material of the spheres, "
+            "lower pressures, or smaller spheres"
+        )
+    return found
+
+
+def _behind(p: ScenePlan, tables: Tables) -> int:
+    """Largest number of spheres in a frame at the end of a phase whose centres are behind the punch."""
+    stages, spheres = tables["stages"], tables["particles"]
+    declared = p.scene.stages
+    assert declared is not None
+    axis, at = _plane(p, declared)
+    height = spheres["step"].map(stages.set_index("step")["height"])
+    counts = (np.abs(spheres["xyz"[axis]] - at) > height).groupby(spheres["step"]).sum()
+    return int(counts.max())
