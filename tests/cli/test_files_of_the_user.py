@@ -43,7 +43,7 @@ def test_a_file_of_the_user_is_kept_until_force_is_given(kind, tmp_path, capsys,
     words, name = WRITERS[kind]
     steel = (CASES / "steel_wall.toml").read_text()
     (tmp_path / "steel.toml").write_text(re.sub("speeds = .*", 'speeds = ["5 m/s"]', steel))
-    (tmp_path / "mill.j2").write_text("{{ deck.time_step }}\n")
+    (tmp_path / "mill.j2").write_text("{{ deck.plan.time_step }}\n")
     shutil.copy(CASES / "settle_glass.toml", tmp_path / "scene.toml")
     (tmp_path / name).parent.mkdir()
     (tmp_path / name).write_text("of the user")
@@ -60,7 +60,7 @@ def test_what_a_command_wrote_it_replaces_without_force(kind, tmp_path, capsys, 
     monkeypatch.chdir(tmp_path)
     shutil.copy(CASES / "settle_glass.toml", tmp_path / "scene.toml")
     shutil.copy(CASES / "steel_wall.toml", tmp_path / "steel.toml")
-    (tmp_path / "mill.j2").write_text("{{ deck.time_step }}\n")
+    (tmp_path / "mill.j2").write_text("{{ deck.plan.time_step }}\n")
     words, name = WRITERS[kind]
     for _ in range(2):
         assert call(words, capsys, monkeypatch).code == 0

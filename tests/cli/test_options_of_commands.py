@@ -29,7 +29,7 @@ from epdem.verification.stability import bulk_cost
 
 STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
-TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
+TEMPLATE = "{{ deck.plan.time_step }} {{ a | default(0) }}\n"
 HARDNESS = {"indentation": "curve.csv", "e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
 HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9", "tolerance": "0.1", "engine": "yade"}
 HARDNESS |= {"measured": None, "uncertainty": "0.01", "ranks": "2", "jobs": "1", "out": "there", "force": None}

@@ -171,7 +171,7 @@ def test_any_command_line_is_carried_out_or_refused_by_one_sentence(command, fil
         steel = (CASES / "steel_wall.toml").read_text()
         Path("steel.toml").write_text(re.sub("speeds = .*", 'speeds = ["5 m/s"]', steel))
         Path("scene.toml").write_bytes((CASES / "settle_glass.toml").read_bytes())
-        Path("own.j2").write_text("{{ deck.time_step }}\n")
+        Path("own.j2").write_text("{{ deck.plan.time_step }}\n")
         before = sorted(map(str, Path().iterdir()))
         code, said = called([w for w in [command, file, *more] if "\0" not in w])
         assert code in (0, 1, 2, 3), code
@@ -182,7 +182,7 @@ def test_any_command_line_is_carried_out_or_refused_by_one_sentence(command, fil
             assert sorted(map(str, Path().iterdir())) == before
 
 
-PIECES = ["{{ deck.time_step }}", "{% for i in range(9) %}", "{% endfor %}", "{{ a }}", "{{ 1/0 }}", "{% if a %}", "{#"]
+PIECES = ["{{ deck.plan.time_step }}", "{% for i in range(9) %}", "{% endfor %}", "{{ a }}", "{{ 1/0 }}", "{% if a %}", "{#"]
 PIECES += [
     "{{",
     "}}",
