@@ -182,8 +182,17 @@ def test_any_command_line_is_carried_out_or_refused_by_one_sentence(command, fil
             assert sorted(map(str, Path().iterdir())) == before
 
 
-PIECES = ["{{ deck.plan.time_step }}", "{% for i in range(9) %}", "{% endfor %}", "{{ a }}", "{{ 1/0 }}", "{% if a %}", "{#"]
+PIECES = [
+    "{{ deck.plan.time_step }}",
+    "{% for i in range(9) %}",
+    "{% endfor %}",
+    "{{ a }}",
+    "{{ 1/0 }}",
+    "{% if a %}",
+    "{#",
+]
 PIECES += [
+    "{#",
     "{{",
     "}}",
     "{% include 'own.j2' %}",

@@ -43,6 +43,14 @@ SMALL = {
         "duration": "0.05 s",
     },
     "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
+    "press": {
+        "diameter": "0.5 mm",
+        "height": "0.8 mm",
+        "count": 70,
+        "stages": ["5 MPa", "10 MPa"],
+        "speed": "4 m/s",
+        "unload_speed": "4 m/s",
+    },
     "peening": {"count": 40, "width": "4 mm", "duration": "0.5 ms"},
     "parts": {},
 }

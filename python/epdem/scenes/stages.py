@@ -53,7 +53,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """One row per phase from the first in which the punch moves towards the plane, SI.
 
     pressure, opposite_pressure: means of the last row of the phase. springback: axial strain since the end of the last
-    phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase.
+    phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase; NaN
+    after a release, where the law leaves too much of it.
     work, plastic, elastic: as in the energy balance.
     """
     stages = p.scene.stages
@@ -71,11 +72,11 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     found["porosity"] = 1.0 - found["relative_density"]
     pressed = np.array([speeds[n] > 0.0 for n in chosen.index])
     loaded = found["height"].where(pressed).ffill()
-    away = np.array([speeds[n] < 0.0 for n in chosen.index])
+    away = np.array([speeds[n] < 0.0 for n in chosen.index], bool)
     found["springback"] = (found["height"] / loaded - 1.0).where(away)
     if stages.sides and "contacts" in tables:
         normal = _normal_forces(tables["contacts"], stages).reindex(ends, fill_value=0.0).to_numpy()
-        found["radial_pressure"] = normal / (stages.perimeter * found["height"])
+        found["radial_pressure"] = (normal / (stages.perimeter * found["height"])).where(~away)
         axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
         found["radial_over_axial"] = (found["radial_pressure"] / axial).where(axial > 0.0)
     found["work"] = np.interp(ends, tables["rows"]["step"], work_of_walls(p, tables["rows"]))

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A press: stages to pressures, hold and release, in three engines; its table by routes that do not use it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from scene_runs import run, write_case
+from stored_runs import CASES
+
+from engines.lammps_decks import needs_lammps
+from epdem.case.scene import parse
+from epdem.case.toml import read_toml
+from epdem.errors import CaseError
+from epdem.scenes import report, stages
+from epdem.scenes.plan import plan
+
+SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
+PRESSURES = [10e6, 40e6]
+ENGINES = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
+    pytest.param("lammps", marks=needs_lammps),
+]
+
+
+def press(**scene):
+    """A box with 150 spheres, pressed fast to two pressures; without friction, so that no energy is missing."""
+    data = read_toml(CASES / "press_tablet.toml")
+    del data["contact"], data["scene"]["diameter"]
+    more = {"box": [f"{SIDE} m", f"{SIDE} m"], "height": f"{HEIGHT} m", "count": COUNT, "speed": "3 m/s"}
+    more |= {"stages": [f"{x} Pa" for x in PRESSURES], "unload_speed": "0.5 m/s"}
+    data["output"] |= {"rows": 1500, "particles": 10}
+    data["scene"] |= more | scene
+    return {key: value for key, value in data.items() if value is not None}
+
+
+def without(data, *keys):
+    """The data of a case without keys of its scene."""
+    return data | {"scene": {key: value for key, value in data["scene"].items() if key not in keys}}
+
+
+@pytest.fixture(scope="module")
+def pressed(tmp_path_factory):
+    """The outcome in LIGGGHTS, with the forces on the sides measured as well."""
+    sides = [{"name": f"on_{wall}", "kind": "force", "wall": wall} for wall in ("left", "right", "front", "back")]
+    folder = tmp_path_factory.mktemp("press")
+    return run(write_case(press(measure=sides), folder), out=folder / "out")
+
+
+@pytest.mark.liggghts
+def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed):
+    found, rows, spheres = pressed.results.tables["stages"], pressed.results.rows, pressed.results.particles
+    assert found["phase"].to_list() == [f"{name}{k}" for k in (1, 2) for name in ("stage", "hold", "release")]
+    at = rows.set_index("step").loc[found["step"]]
+    assert found["pressure"].to_numpy() == pytest.approx(at["pressure"]) and (at["pressure"] > 0).all()
+    reached = found.set_index("phase")["pressure"]
+    for k, pressure in enumerate(PRESSURES, 1):
+        assert pressure <= reached[f"stage{k}"] < 1.3 * pressure
+        assert reached[f"release{k}"] <= 0.011 * pressure
+    # the way of the punch from its speed alone
+    speed = {"stage": -3.0, "hold": 0.0, "release": 0.5}
+    times = pressed.results.phases.set_index("phase")
+    ways = [speed[x.rstrip("12")] * (times["end_time"][x] - times["begin_time"][x]) for x in found["phase"]]
+    height = HEIGHT + np.cumsum(ways)
+    assert found["height"].to_numpy() == pytest.approx(height, rel=1e-9)
+    volume = COUNT * 4 / 3 * math.pi * RADIUS**3
+    assert found["relative_density"].to_numpy() == pytest.approx(volume / (SIDE**2 * height), rel=1e-9)
+    assert found["porosity"].to_numpy() == pytest.approx(1 - found["relative_density"])
+    springback = found.set_index("phase")["springback"].dropna()
+    assert springback.to_dict() == pytest.approx(
+        {f"release{k}": height[3 * k - 1] / height[3 * k - 2] - 1 for k in (1, 2)}
+    )
+    assert (springback > 0.002).all() and (springback < 0.1).all()
+    # on the sides: LIGGGHTS's own sums of each wall
+    sums = at[[f"on_{wall}" for wall in ("left", "right", "front", "back")]].sum(axis=1)
+    hold = (found["phase"] == "hold2").to_numpy()
+    radial = (sums / (4 * SIDE * height)).to_numpy()
+    assert found["radial_pressure"].to_numpy()[hold] == pytest.approx(radial[hold], rel=0.02)
+    # the force of the punch times its way
+    work = -np.cumsum(rows["pressure"] * SIDE**2 * np.diff(rows["punch_z"], prepend=HEIGHT))
+    assert found["work"].iloc[-1] == pytest.approx(work.iloc[-1], rel=0.05)
+    kept = found["plastic"] + found["elastic"]
+    assert kept.iloc[:5].to_numpy() == pytest.approx(found["work"].iloc[:5], rel=0.1)
+    assert len(spheres[spheres["step"] == found["step"].iloc[-1]]) == COUNT
+
+
+@pytest.mark.liggghts
+def test_the_page_has_density_over_pressure_and_heckels_line_through_the_stages(pressed):
+    (chart,) = report.key(pressed.plan, pressed.results.tables)
+    density, heckel = chart.panels
+    ends = pressed.results.tables["stages"]
+    assert np.asarray(density.series[1].y) == pytest.approx(ends["relative_density"].to_numpy())
+    line = heckel.series[1]
+    one, two = ends[ends["phase"].isin(["stage1", "stage2"])].to_dict("records")
+    slope = (math.log(one["porosity"]) - math.log(two["porosity"])) / (two["pressure"] - one["pressure"])
+    assert line.name == f"Heckel, 1/slope = {1 / slope:.3g} Pa"
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_round_die_has_the_same_densities_in_every_engine(engine, tmp_path):
+    data = without(press(diameter="0.6 mm", count=120, stages=["30 MPa"]), "box", "hold")
+    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    found = outcome.results.tables["stages"].set_index("phase")
+    assert found.index.to_list() == ["stage1", "release1"]
+    assert found["relative_density"]["stage1"] == pytest.approx(0.67, abs=0.03)  # random packings differ
+    assert 0.0 < found["springback"]["release1"] < 0.1
+    assert 0.3 < found["radial_over_axial"]["stage1"] < 1.0
+
+
+REFUSED = [
+    (without(press(), "box"), "a die has a diameter or a box"),
+    (press(diameter="1 mm"), "a round die has a diameter, and neither box nor periodic"),
+    (press(mass="1 mg"), "give one of count and mass"),
+    (press(stages=[]), "stages"),
+]
+
+
+@pytest.mark.parametrize(("data", "words"), REFUSED, ids=[words for _, words in REFUSED])
+def test_a_press_that_is_not_one_is_refused_in_a_sentence(data, words):
+    with pytest.raises(CaseError, match=words) as error:
+        plan(parse(data))
+    assert "\n" not in str(error.value)
+
+
+def test_a_fast_press_and_spheres_behind_the_punch_are_told():
+    """v/h d sqrt(rho/P) of the second stage by hand; a frame in which one of two spheres is above the punch."""
+    p = plan(parse(without(press(periodic=True), "hold")))
+    ends = [phase.end for phase in p.phases]
+    stage = {"phase": ["stage2"], "step": [ends[1]], "pressure": [40e6], "height": [0.4e-3]}
+    spheres = {"step": [ends[1]] * 2, "x": [0.0] * 2, "y": [0.0] * 2, "z": [0.1e-3, 0.41e-3]}
+    tables = {"stages": pd.DataFrame(stage), "particles": pd.DataFrame(spheres)}
+    number = 3.0 / 0.4e-3 * 2 * RADIUS * math.sqrt(8960 / 40e6)
+    fast, behind = stages.warnings(p, tables)
+    assert f"phase stage2: the inertial number v/h d sqrt(rho/P) is {number:.2g}, above 0.001" in fast
+    assert f"{3.0 * 1e-3 / number:.2g} m/s is slow enough" in fast
+    assert behind.startswith("1 spheres have passed wall punch")
+    slow = replace(p, phases=tuple(p.phases[:1]))
+    assert stages.warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []
