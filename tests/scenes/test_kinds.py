@@ -93,7 +93,10 @@ def test_the_file_of_a_kind_counts_from_the_case_and_goes_with_it(mill, tmp_path
         ({"count": 100_000}, r"scene.count = 100000: the spheres would fill .* at most 26%"),
         ({"lifters": 3}, "scene.lifters = 3, unknown key; remove it or correct its spelling"),
         ({"kind": "./kiln.toml.j2"}, "kiln.toml.j2: no such file"),
-        ({"kind": "mill"}, "scene.kind = 'mill', must be one of 'compaction', 'drum', 'hopper', 'peening', 'settle', "),
+        (
+            {"kind": "mill"},
+            "scene.kind = 'mill', must be one of 'compaction', 'drum', 'hopper', 'peening', 'press', 'settle', ",
+        ),
     ],
 )
 def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
@@ -121,7 +124,7 @@ def test_a_mistake_of_a_kind_names_its_file(old, new, words, mill):
 def test_no_word_of_a_kind_stands_below_the_room_of_cases():
     """Names of kinds and of their walls, in code and templates; `compaction` is also an option of laws."""
     names = sorted(path.name.removesuffix(".toml.j2") for path in (ROOT / "templates/kinds").iterdir())
-    assert names == ["compaction", "drum", "hopper", "peening", "settle"]
+    assert names == ["compaction", "drum", "hopper", "peening", "press", "settle"]
     words = rf"\b(Preset|{'|'.join(name.title() for name in names)})\b|[\"'](settle|hopper|drum|peening)[\"']"
     words += r"|\b(plate_force|plate_z|press_z)\b|f_(drum|plate|floor)\b"
     rooms = [

@@ -208,8 +208,11 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
             "no wall of tri",
         ),
         ({"until": {"wall": "lid", "travel": "1 mm"}}, "wall 'lid' has no linear motion in this phase"),
-        ({"until": {"count": 1, "kinetic_energy": "1 J"}}, "give one of kinetic_energy, count, force and travel"),
-        ({"until": {"force": "1 N"}}, "'wall' belongs to force and travel"),
+        (
+            {"until": {"count": 1, "kinetic_energy": "1 J"}},
+            "give one of kinetic_energy, count, force, force_below and travel",
+        ),
+        ({"until": {"force": "1 N"}}, "'wall' belongs to force, force_below and travel"),
         ({"until": {"wall": "roof", "force": "1 N"}}, "phase.fall.until.wall = 'roof' is no wall"),
         ({"until": {"count": 1, "after": "2 s"}}, "until.after must be below duration"),
         ({"move": [{"wall": "lid", "kind": "spin"}]}, "scene.phase.0.move.0.kind = 'spin', must be one of"),

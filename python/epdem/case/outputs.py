@@ -80,10 +80,10 @@ class ReboundSpeed(Frozen):
     speed: Speed
 
 
-class Press(Frozen):
+class Unloading(Frozen):
     """Loading is at most as stiff as unloading, and returns no more work: of the rows `force` and `position`."""
 
-    kind: Literal["press"]
+    kind: Literal["unloading"]
     force: PartName
     position: PartName
 
@@ -104,4 +104,4 @@ class Stages(Frozen):
     perimeter: Length | None = None
 
 
-Check = Annotated[FloorLoad | BedRebound | MassFlow | ReboundSpeed | Press, Field(discriminator="kind")]
+Check = Annotated[FloorLoad | BedRebound | MassFlow | ReboundSpeed | Unloading, Field(discriminator="kind")]

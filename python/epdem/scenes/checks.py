@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..base.tables import Quantity
-from ..case.outputs import BedRebound, FloorLoad, MassFlow, Press, ReboundSpeed
+from ..case.outputs import BedRebound, FloorLoad, MassFlow, ReboundSpeed, Unloading
 from ..case.outputs import Row as NamedRow
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
@@ -181,7 +181,7 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
 
-def stiffness(p: ScenePlan, press: Press, rows: pd.DataFrame) -> tuple[float, float]:
+def stiffness(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float, float]:
     """Secant stiffness [N/m] of (loading, unloading) between half the largest force and that force."""
     turn = p.phases[-2].end
     load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
@@ -195,7 +195,7 @@ def stiffness(p: ScenePlan, press: Press, rows: pd.DataFrame) -> tuple[float, fl
     return load, unload
 
 
-def recovered(p: ScenePlan, press: Press, rows: pd.DataFrame) -> tuple[float, float]:
+def recovered(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float, float]:
     """Work [J] that a wall (put in, got back): its force, a mean over each interval, times the displacement."""
     row = next(row for row in p.scene.row if row.name == press.force)
     speed = row.sign * _velocity(p, row, rows)
@@ -310,7 +310,7 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 expected = single_rebound(p.case, check)
                 speed, count = rebounds(tables["particles"], check.speed, expected)
                 rows.append(_row("rebound_speed", speed, expected, 1e-3, count=count))
-            case Press():
+            case Unloading():
                 put_in, back = recovered(p, check, tables["rows"])
                 rows.append(_below("loading_stiffness", *stiffness(p, check, tables["rows"])))
                 rows.append(_below("recovered_work", back, put_in))

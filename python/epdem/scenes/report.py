@@ -12,7 +12,7 @@ from rich.console import Console
 
 from ..base.files import claim
 from ..base.terminal import make_table, show_table, table
-from ..case.outputs import MassFlow, Press, ReboundSpeed
+from ..case.outputs import MassFlow, ReboundSpeed, Unloading
 from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
 from ..impacts.report import records
@@ -165,9 +165,9 @@ def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(TIME, Axis("mass below the outlet", "kg"), [Series("scene", time, out, 0), line])]
 
 
-def _press(p: ScenePlan, tables: Tables) -> list[Panel]:
+def _unloading(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Force over displacement, loading and unloading."""
-    rows, (press,) = tables["rows"], [x for x in p.scene.check if isinstance(x, Press)]
+    rows, (press,) = tables["rows"], [x for x in p.scene.check if isinstance(x, Unloading)]
     row = next(row for row in p.scene.row if row.name == press.position)
     begin = p.triangles[row.wall][0, 0, row.axis]
     way, force = (begin - rows[press.position]).abs().to_numpy(), rows[press.force].to_numpy()
@@ -182,7 +182,7 @@ def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
     pressure, density = tables["rows"][p.scene.stages.pressure], stages.densities(p, tables)  # type: ignore[union-attr]
     ends = tables["stages"]
     series = [
-        Series("press", pressure.to_numpy(), density, 0),
+        Series("punch", pressure.to_numpy(), density, 0),
         Series("ends of phases", ends["pressure"].to_numpy(), ends["relative_density"].to_numpy(), INK, None, 0),
     ]
     return [Panel(Axis("pressure", "Pa"), Axis("relative density"), series)]
@@ -195,7 +195,7 @@ def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
     """
     pressure, density = tables["rows"][p.scene.stages.pressure], stages.densities(p, tables)  # type: ignore[union-attr]
     rising = ((pressure >= pressure.cummax()) & (pressure > 0.0)).to_numpy() & (density < 1.0)
-    series = [Series("press", pressure.to_numpy()[rising], -np.log(1.0 - density[rising]), 0)]
+    series = [Series("punch", pressure.to_numpy()[rising], -np.log(1.0 - density[rising]), 0)]
     ends = stages.loaded(p, tables["stages"])
     if len(ends) > 1:
         x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].clip(lower=1e-3).to_numpy())
@@ -271,7 +271,7 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 
 OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
-    "press": _press,
+    "unloading": _unloading,
     "densification": _densification,
     "heckel": _heckel,
 }
