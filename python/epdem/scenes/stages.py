@@ -53,9 +53,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """One row per phase from the first in which the punch moves towards the plane, SI.
 
     pressure, opposite_pressure: means of the last row of the phase. springback: axial strain since the end of the last
-    phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase; NaN
-    after a release, where the law leaves too much of it.
-    work, plastic, elastic: as in the energy balance.
+    phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase,
+    NaN after a release, where the law leaves too much of it. work, plastic, elastic: as in the energy balance.
     """
     stages = p.scene.stages
     assert stages is not None
