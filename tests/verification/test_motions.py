@@ -14,7 +14,7 @@ from epdem.errors import CaseError, EngineError
 from epdem.verification.motion import paths as motions
 from epdem.verification.motion.compare import compare, touch_of
 from epdem.verification.motion.embedded import EmbeddedMotions
-from epdem.verification.motion.prescribed import read, refuse, text
+from epdem.verification.motion.prescribed import check_motion, read, text
 
 CASES = Path(__file__).parents[2] / "cases"
 OWN = {make.__name__: make for make in motions.MOTIONS}
@@ -212,10 +212,10 @@ def test_a_motion_for_other_radii_is_refused():
     motion = OWN["shear_slip"](touch())
     small = replace(touch().experiment, body=replace(touch().experiment.body, radius=5e-3))
     with pytest.raises(CaseError, match=r"nothing touches, the least distance is 0\.01995 m and the radii are 0\.005"):
-        refuse(replace(touch(), experiment=small), motion)
+        check_motion(replace(touch(), experiment=small), motion)
     near = replace(motion, place=0.3 * motion.place)
     with pytest.raises(CaseError, match=r"the centres come as near as 0\.00598\d* m; the least is the smaller radius"):
-        refuse(touch(), near)
+        check_motion(touch(), near)
 
 
 def test_two_files_of_one_name_are_refused(tmp_path):

@@ -61,7 +61,7 @@ Restitution = Annotated[
 ]  # of impacts that do not yield
 
 
-def nothing() -> list[float]:
+def zero_vector() -> list[float]:
     """A vector without length."""
     return [0.0, 0.0, 0.0]
 

@@ -39,7 +39,7 @@ Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.5, hint="from the normal")
 Tolerance = Annotated[float, Quantity("1", above=0.0)]
 
 
-class Body(Frozen):
+class ImpactingBody(Frozen):
     """The sphere that moves."""
 
     radius: Length
@@ -83,7 +83,7 @@ class Impact(Frozen):
     """
 
     kind: Literal["sphere-wall", "sphere-sphere"]
-    body: Body
+    body: ImpactingBody
     target: Target
     speeds: SpeedRange | Annotated[list[Speed], Field(min_length=1, max_length=1000)]
     angles: AngleRange | Annotated[list[Angle], Field(min_length=1, max_length=1000)] | None = None

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Field, Tag, model_validator
 
 from ..base.tables import Quantity as Column
-from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, nothing
+from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, zero_vector
 from .outputs import Check, Row, Stages
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
 from .walls import (
@@ -159,7 +159,7 @@ class Fill(Frozen):
     mass: Annotated[float, Quantity("kg", above=0.0)] | None = None
     fraction: Share | None = None
     rate: Rate | None = None
-    velocity: Speeds = Field(default_factory=nothing)
+    velocity: Speeds = Field(default_factory=zero_vector)
     phase: PartName | None = None
     exact: bool = True  # false: spheres that are in the region before count, too
 
@@ -212,15 +212,15 @@ class FileFill(Frozen):
 AnyFill = Annotated[Annotated[FileFill, Tag("with")] | Annotated[Fill, Tag("without")], has("file")]
 
 
-class Body(Frozen):
+class SingleSphere(Frozen):
     """A single sphere; frozen: it stays where it is. It comes at the begin of `phase` (the first one)."""
 
     name: PartName
     material: Name
     radius: Length
     position: Vector
-    velocity: Speeds = Field(default_factory=nothing)
-    spin: Annotated[list[Spin], Field(min_length=3, max_length=3)] = Field(default_factory=nothing)
+    velocity: Speeds = Field(default_factory=zero_vector)
+    spin: Annotated[list[Spin], Field(min_length=3, max_length=3)] = Field(default_factory=zero_vector)
     frozen: bool = False
     phase: PartName | None = None
 
@@ -254,7 +254,7 @@ class Parts(Frozen):
     gravity: Gravity = 9.81
     wall: list[Wall] = Field(default_factory=list, max_length=64)
     fill: list[AnyFill] = Field(default_factory=list, max_length=64)
-    body: list[Body] = Field(default_factory=list, max_length=1000)
+    body: list[SingleSphere] = Field(default_factory=list, max_length=1000)
     phase: Annotated[list[Phase], Field(min_length=1, max_length=64)]
     measure: list[Measure] = Field(default_factory=list, max_length=64)
     row: list[Row] = Field(default_factory=list, max_length=64)
@@ -347,7 +347,7 @@ class Parts(Frozen):
         return {w.name: w for w in self.wall if isinstance(w, MeshWall)}
 
     @property
-    def later(self) -> list[Body]:
+    def later(self) -> list[SingleSphere]:
         """The single spheres that come at the begin of another phase than the first."""
         return [b for b in self.body if b.phase not in (None, self.phase[0].name)]
 

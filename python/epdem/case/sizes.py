@@ -242,5 +242,5 @@ def refuse_shares(particles: list[Particles]) -> None:
 
 
 def context(path: object) -> dict[str, Any]:
-    """What the models of a case read from `path` need to find the files that it names."""
+    """Context in which the models of a case in `path` find the files that it names."""
     return {"folder": Path(str(path)).parent}

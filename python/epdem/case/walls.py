@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, model_validator
 
-from .fields import Frozen, Length, Name, Quantity, Speed, Spin, nothing
+from .fields import Frozen, Length, Name, Quantity, Speed, Spin, zero_vector
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]
@@ -242,7 +242,7 @@ class StlWall(MeshWall):
     file: FileName
     scale: Annotated[float, Quantity("1", above=0.0)] = 1.0
     rotate: Rotation | None = None
-    position: Vector = Field(default_factory=nothing)
+    position: Vector = Field(default_factory=zero_vector)
     closed: bool = False
 
 
@@ -281,7 +281,7 @@ class RotateMove(_Move):
 
     kind: Literal["rotate"]
     axis: Direction
-    origin: Vector = Field(default_factory=nothing)
+    origin: Vector = Field(default_factory=zero_vector)
     rate: Spin
 
     @model_validator(mode="after")
@@ -331,7 +331,7 @@ Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discri
 
 
 class Until(Frozen):
-    """What ends a phase before its duration, looked at in every row from `after` on (a tenth of the duration).
+    """Condition that ends a phase before its duration, tested in every row from `after` on (a tenth of the duration).
 
     kinetic_energy: of a sphere, the mean is below. count: so few spheres are in the room. force: mean force of a row on
     `wall` is reached; force_below: the force has fallen to it. travel: way of `wall`, which moves with a constant
@@ -410,7 +410,7 @@ class Phase(Frozen):
 
     @property
     def condition(self) -> Until | None:
-        """What may end the phase at a step that is not known before the run."""
+        """Condition that ends the phase at a step that is not known before the run."""
         return None if self.until is None or self.until.travel is not None else self.until
 
     @property

@@ -26,7 +26,7 @@ class Citations(dict[str, str]):
 
 
 def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> Citations:
-    """What to cite for a case that runs with `laws` on `engines`."""
+    """Sources to cite for a case that runs with `laws` on `engines`."""
     found = {"epdem": PROGRAM, "equations 8.xx": CHAPTER} | of_laws(laws)
     if case.viscous is not None:
         found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]

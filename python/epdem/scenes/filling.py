@@ -39,7 +39,7 @@ class Insertion:
     mixture: str = ""
 
 
-def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
+def size_weights(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
     """(material, radius [m], weight) of each size: spheres drawn with these weights have the shares of the mass."""
     return [
         (p.material, radius, share / (case.materials[p.material].density * radius**3))
@@ -50,7 +50,7 @@ def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, flo
 
 def mean_volume(case: SceneCase, fill: Insertion) -> float:
     """Mean volume of the spheres of a fill [m^3]."""
-    sizes = drawn(case, fill.particles)
+    sizes = size_weights(case, fill.particles)
     return float(np.average([4.0 / 3.0 * math.pi * r**3 for _, r, _ in sizes], weights=[w for _, _, w in sizes]))
 
 
@@ -132,7 +132,7 @@ def counted(case: SceneCase, f: Fill) -> list[Size]:
 
 def _random(case: SceneCase, fill: Insertion) -> list[Size]:
     """The sizes of a fill whose spheres are drawn at random, with the mean number of each."""
-    weights = [weight for *_, weight in drawn(case, fill.particles)]
+    weights = [weight for *_, weight in size_weights(case, fill.particles)]
     classes = _classes(case, fill.particles)
     return [Size(*c[:4], fill.count * w / sum(weights)) for c, w in zip(classes, weights, strict=True)]
 

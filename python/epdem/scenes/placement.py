@@ -12,7 +12,7 @@ from ..case.parts import Region
 from ..case.scene import SceneCase
 from ..case.walls import Upright
 from ..errors import CaseError
-from .filling import Insertion, drawn
+from .filling import Insertion, size_weights
 from .model import Model
 from .plan import ScenePlan
 from .walls import FloatArray
@@ -21,8 +21,8 @@ ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows s
 
 
 def sizes(case: SceneCase, m: Model, fill: Insertion, rng: random.Random) -> list[tuple[float, int]]:
-    """(radius [m], number of its type) of every sphere, drawn by their share of the mass, the largest first."""
-    classes = drawn(case, fill.particles)
+    """(radius [m], number of its type) of every sphere, size_weights by their share of the mass, the largest first."""
+    classes = size_weights(case, fill.particles)
     kinds = [(radius, m.type_of(material)) for material, radius, _ in classes]
     return sorted(rng.choices(kinds, [weight for *_, weight in classes], k=fill.count), reverse=True)
 

@@ -174,7 +174,7 @@ def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
         raise CaseError(f"{place}: open along {n} edges, one at {middle(edge)}; close the mesh, or remove 'closed'")
 
 
-def placed(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
+def place_stl(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
     """The triangles of an STL wall in the room xlo xhi ylo yhi zlo zhi [m], shape (n, 3, 3).
 
     largest: of the radii [m], against which the size is checked. Raises CaseError for a file that is no good wall.
@@ -219,7 +219,7 @@ def _triangles(w: MeshWall, room: Limits, largest: float) -> FloatArray:
             surface: FloatArray = revolved(w.profile) + np.array([*w.center, 0.0])
             return surface
         case StlWall():
-            return placed(w, room, largest)
+            return place_stl(w, room, largest)
     raise AssertionError(w)
 
 

@@ -166,7 +166,7 @@ def motion_errors(test: ContactTest, tool: MotionEngine, folder: Path) -> dict[s
 
 
 def deck(test: ContactTest) -> str:
-    """What LAMMPS's test program does with the file, and the state after each segment in a file."""
+    """Script that repeats LAMMPS's test program on the file and writes the state after each segment."""
     lines = ["newton on", *(f"variable {name} index {value}" for name, value in test.variables.items())]
     lines += [*test.lines("pre_commands"), f"pair_style {test.keys['pair_style']}"]
     lines += [f"pair_coeff {line}" for line in test.lines("pair_coeff")]

@@ -63,7 +63,7 @@ class Outcome:
 
 
 def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Model]:
-    """What runs against what. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
+    """Pairs of engine and reference. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
     engines = [*engines, *(SAME_LAW if DEFAULT_ENGINE in engines else ())]
     numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
     chosen = []

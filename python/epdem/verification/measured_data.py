@@ -110,7 +110,7 @@ def case_of(measured: Measured, material: str, value: float, speeds: Sequence[fl
 
 
 def _simulated(x: Experiment, row: pd.Series, quantity: str) -> float:
-    """What a run of an impact gives for a quantity: e_n, or the width [m] of the contact at its largest overlap."""
+    """Simulated value of a quantity: e_n, or the width [m] of the contact at its largest overlap."""
     if quantity == "e_n":
         return float(row["e_n"])
     if x.law.adheres:

@@ -71,7 +71,7 @@ def of_stability(outcome: Stability, path: Path) -> Path:
 
 
 def validation_chart(v: Validation) -> Chart:
-    """What the first engine gives over the measured value, for every law and point."""
+    """Value of the first engine over the measured value, for every law and point."""
     points = v.points[v.points["engine"] == v.points["engine"].iloc[0]]
     series = [
         Series(law, own["number"].to_numpy(float), 1.0 + own["error"].to_numpy(float), k, None, k)

@@ -147,7 +147,7 @@ def _numbers(values: Iterable[float]) -> str:
 
 
 def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
-    """What changes in a phase: component of the way [m] or turn [rad], and its formula of T.
+    """Changes of a wall in a phase: component of the way [m] or turn [rad], and its formula of T.
 
     T is the time of the motion [s], of a wall that a force drives its way [m].
     """

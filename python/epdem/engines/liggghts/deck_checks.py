@@ -23,7 +23,7 @@ _VARIABLE = re.compile(r"\$\{(\w+)\}|\$(\w)")
 
 @dataclass
 class _Deck:
-    """What a deck says: properties with their places and values, words of the models, smallest sphere, time steps."""
+    """Statements of a deck: properties with places and values, words of the models, smallest sphere, time steps."""
 
     properties: dict[str, tuple[str, list[float]]] = field(default_factory=dict)
     models: list[tuple[str, list[str]]] = field(default_factory=list)

@@ -78,7 +78,7 @@ def memory(m: Model, *, wall: bool = False) -> int:
 
 
 def history_columns(m: Model) -> tuple[str, ...]:
-    """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
+    """Columns that a table of contacts takes of the law's memory, which stands first: the largest overlap of a law that
     yields, whether bodies that adhere are attached (its root is above 0); last what compaction adds."""
     columns = ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
     return columns + tuple(name.replace("_", " ") for name in GROWTH) * m.compaction

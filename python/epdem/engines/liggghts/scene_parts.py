@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from ...base import rendering as decks
-from ...case.parts import Body
+from ...case.parts import SingleSphere
 from ...case.walls import LinearMove, Move, PlaneWall, PressMove, Room, RotateMove, Vector3, VibrateMove
 from ...errors import CaseError
 from ...scenes import filling
@@ -270,7 +270,7 @@ def _place(p: ScenePlan, bed: PressedBed) -> str:
     return f"(f_{wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
-def _new_sphere(p: ScenePlan, b: Body) -> NewSphere:
+def _new_sphere(p: ScenePlan, b: SingleSphere) -> NewSphere:
     return NewSphere(
         name=f"body_{b.name}",
         type=p.model.type_of(b.material),

@@ -10,8 +10,7 @@ from ...base import rendering as decks
 from ...case.walls import Move
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
-from ..host import refuse as refuse_value
-from ..host import scene_head
+from ..host import refuse, scene_head
 from . import classes as words
 from .classes import ContactClasses, Functors, Material, PairValue, of_pairs
 from .scene_parts import (
@@ -20,6 +19,7 @@ from .scene_parts import (
     Fill,
     Wall,
     bodies_file,
+    check_walls,
     fills,
     is_endless,
     loads,
@@ -30,7 +30,6 @@ from .scene_parts import (
     walls,
 )
 from .scene_parts import files as files_of_parts
-from .scene_parts import refuse as refuse_parts
 
 Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
@@ -40,10 +39,10 @@ NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
 NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
 
 
-def refuse(p: ScenePlan) -> None:
+def check(p: ScenePlan) -> None:
     """Raise CaseError for parts of a scene that YADE does not have."""
     out = p.output
-    refuse_parts(p)
+    check_walls(p)
     rolling = p.model.rolling and p.model.rolling.model
     unknown: dict[str, tuple[object, str]] = {
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
@@ -52,7 +51,7 @@ def refuse(p: ScenePlan) -> None:
         "output.pictures": (out.pictures, "YADE draws none without a display"),
     }
     for place, (value, reason) in unknown.items():
-        refuse_value(place, value, reason)
+        refuse(place, value, reason)
 
 
 def notes(p: ScenePlan) -> list[str]:
@@ -167,7 +166,7 @@ def _placed(p: ScenePlan) -> bool:
 
 def deck(p: ScenePlan) -> SceneDeck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
-    refuse(p)
+    check(p)
     m, friction, phases, every_wall = p.model, p.model.friction, tuple(_phases(p)), walls(p)
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))

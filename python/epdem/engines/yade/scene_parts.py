@@ -59,7 +59,7 @@ class Fill:
     every: int
 
 
-def refuse(p: ScenePlan) -> None:
+def check_walls(p: ScenePlan) -> None:
     """Raise CaseError for walls that YADE does not have."""
     for name, mesh in p.scene.meshes.items():
         if surface_rotation(mesh) and any(name in phase.moves for phase in p.phases):
@@ -110,7 +110,7 @@ def _planes(p: ScenePlan) -> dict[str, PlaneWall]:
 
 
 def motions(p: ScenePlan, phase: Phase) -> tuple[Move, ...]:
-    """What moves in a phase. A surface that turns is a wall of revolution that turns."""
+    """Motions of a phase. A surface that turns is a wall of revolution that turns."""
     found = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
     return tuple((found | phase.moves).values())
 

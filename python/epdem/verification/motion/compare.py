@@ -22,7 +22,7 @@ from .embedded import EmbeddedMotions
 from .lammps import LammpsMotions
 from .liggghts import LiggghtsMotions
 from .paths import MOTIONS, objectivity, rigid_rotation
-from .prescribed import Loads, Motion, MotionEngine, Touch, read, refuse, text, unit_normals
+from .prescribed import Loads, Motion, MotionEngine, Touch, check_motion, read, text, unit_normals
 from .yade import YadeMotions
 
 _TOOLS = (EmbeddedMotions, LiggghtsMotions, YadeMotions, LammpsMotions)
@@ -95,7 +95,7 @@ def compare(
     touches = [touch_of(case, law) for law in dict.fromkeys(laws) or [None]]
     runs = [(touch, motion) for touch in touches for motion in given or [make(touch) for make in MOTIONS]]
     for touch, motion in runs:
-        refuse(touch, motion)
+        check_motion(touch, motion)
         for tool in tools:
             check_law(tool, touch.experiment.law.name)
     require(*tools)

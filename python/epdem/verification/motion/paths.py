@@ -25,7 +25,7 @@ def _path(*corners: tuple[int, Sequence[float]]) -> Array:
 
 
 def _rates(path: Array) -> Array:
-    """What a path did in each step, over the time step."""
+    """Change of a path in each step, over the time step."""
     return np.diff(path, axis=0, prepend=path[:1]) / TIME_STEP
 
 

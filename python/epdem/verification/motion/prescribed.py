@@ -48,7 +48,7 @@ class Touch:
         return self.experiment.body.radius, self.experiment.target.radius
 
     def plan(self, motion: "Motion") -> Plan:
-        """What the decks of impacts read of a plan."""
+        """Plan from which the decks of impacts are made."""
         x = self.experiment
         return Plan(x, motion.time_step, motion.steps, 1, x.speed[:1], np.zeros(1))
 
@@ -212,7 +212,7 @@ def text(columns: dict[str, npt.NDArray[np.float64]]) -> str:
     return json.dumps({name: values.tolist() for name, values in columns.items()})
 
 
-def refuse(touch: Touch, motion: Motion) -> None:
+def check_motion(touch: Touch, motion: Motion) -> None:
     """Raise CaseError for a motion in which the centres meet, or the spheres never touch."""
     distance = np.linalg.norm(motion.place[:, 0] - motion.place[:, 1], axis=1)
     small = min(touch.radii)

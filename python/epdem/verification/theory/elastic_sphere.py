@@ -64,7 +64,7 @@ def shortening(directions: Array, radius: float, nu: float) -> float:
     return float(by_all - 16 / (3 * np.pi**2) * (1 - nu**2) / radius)
 
 
-def opened(share: float, tau: float) -> float:
+def unloading_depth(share: float, tau: float) -> float:
     """Depth y of the unloading at which the force has fallen to a share of the peak (eq. 8.82)."""
 
     def above(y: Array) -> NDArray[np.bool_]:
@@ -76,6 +76,6 @@ def opened(share: float, tau: float) -> float:
 
 def recovery(directions: Array, share: float, *, force: float, radius: float, tau: float, E: float, nu: float) -> float:
     """Way [R] of each contact when all forces fall from `force` to a share of it; radius, tau: of the peak."""
-    y = opened(share, tau)
+    y = unloading_depth(share, tau)
     alone = (0.75 * (1 - tau) * y * y + 2 / np.pi * tau * y) * force * (1 - nu**2) / (E * radius)
     return float(alone + shortening(directions, radius, nu) * force * (1 - share) / E)
