@@ -4,6 +4,7 @@
 import fcntl
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -47,7 +48,7 @@ def module_folder() -> Path:
                     place.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(file, place)
         for command in sources.yade_commands(EXPORTED)[:2]:
-            text = command.replace("/path/to/yade", os.environ["YADE_SOURCE"])
+            text = command.replace("/path/to/yade", shlex.quote(os.environ["YADE_SOURCE"]))
             done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return EXPORTED / "build"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The contact models as a CMake project for a machine without epdem: files by their places in its folder."""
 
+import shlex
 from pathlib import Path
 
 from ..base import paths
@@ -21,10 +22,11 @@ def _licences() -> dict[Path, Path]:
 
 def yade_commands(folder: Path) -> list[str]:
     """Commands that build the module, and the place where YADE finds it."""
+    build = shlex.quote(f"{folder}/build")
     return [
-        f"cmake -S {folder} -B {folder}/build -DYADE_SOURCE=/path/to/yade  # without YADE_SOURCE the tag is cloned",
-        f"cmake --build {folder}/build",
-        f"export PYTHONPATH={folder}/build  # then in a script of YADE: from epdem_yade import *",
+        f"cmake -S {shlex.quote(str(folder))} -B {build} -DYADE_SOURCE=/path/to/yade  # else the tag is cloned",
+        f"cmake --build {build}",
+        f"export PYTHONPATH={build}  # then in a script of YADE: from epdem_yade import *",
     ]
 
 
@@ -41,8 +43,9 @@ def lammps() -> dict[Path, Path]:
 
 def lammps_commands(folder: Path) -> list[str]:
     """Commands that build the plugin, and the place where LAMMPS finds it."""
+    build = shlex.quote(f"{folder}/build")
     return [
-        f"cmake -S {folder} -B {folder}/build -DLAMMPS_SOURCE_DIR=/path/to/lammps/src",
-        f"cmake --build {folder}/build",
-        f"export LAMMPS_PLUGIN_PATH={folder}/build/cpp_contact/lammps",
+        f"cmake -S {shlex.quote(str(folder))} -B {build} -DLAMMPS_SOURCE_DIR=/path/to/lammps/src",
+        f"cmake --build {build}",
+        f"export LAMMPS_PLUGIN_PATH={shlex.quote(f'{folder}/build/cpp_contact/lammps')}",
     ]
