@@ -85,9 +85,9 @@ EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, L
   keep(b.overlap_ratio, overlap);
 }
 
-/// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block. books: whether energies can
-/// be requested.
-template <bool books>
+/// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block. tallies: whether energies
+/// can be requested.
+template <bool tallies>
 struct Recorder {
   Block& b;
   const int k, n;
@@ -97,7 +97,7 @@ struct Recorder {
   void normal(const ContactConstants<Law>& pair, Lanes R_star, const Step<Law>& now, Lanes overlap,
               const Energies& energies) const {
     if (rarely(pass.strain)) largest(b, k, n, now.radius, overlap, larger_share(pair.bodies) / R_star);
-    if constexpr (books) {
+    if constexpr (tallies) {
       if (!rarely(pass.work)) return;
       const NormalEnergies<Lanes> e = energies();
       store(b.stored_energy.a + k, e.stored);
@@ -160,15 +160,15 @@ struct RollingHistory {
 
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
 /// walls), friction, rolling friction, with compaction the values of GrowthState.
-/// Without `books` no step computes energies or repeats the last step.
-template <class Law, class Friction, bool wall, bool grows = false, bool books = true>
+/// Without `tallies` no step computes energies or repeats the last step.
+template <class Law, class Friction, bool wall, bool grows = false, bool tallies = true>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
   constexpr int last_step = law_values, sliding = law_values + !wall, rolling = sliding + friction_values;
   constexpr int values = law_values || friction_values ? rolling : 0, grown_values = grows ? growth_values : 0;
   [[maybe_unused]] const int growth_at = rolling + (grows && has_history(Rollings{}, pass.rolling) ? 3 : 0);
   ContactSettings settings = pass;
-  if constexpr (!books) settings.repeats = false;
+  if constexpr (!tallies) settings.repeats = false;
   using Pair = ContactConstants<Law>;
   constexpr int bodies_at = offsetof(Pair, bodies) / sizeof(Lanes), all_constants = sizeof(Pair) / sizeof(Lanes);
   static_assert(all_constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
@@ -237,7 +237,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool books =
       return wall ? at(b.mass_i, k) : effective_mass(b, k, pass.freeze);
     };
     ContactLoads<Lanes> loads;  // assigned below: GCC leaves in memory what it initialises with the result
-    loads = contact<Friction, wall>(pair, settings, c, history, mass, Recorder<books>{b, k, n, pass});
+    loads = contact<Friction, wall>(pair, settings, c, history, mass, Recorder<tallies>{b, k, n, pass});
 
     if constexpr (values > 0) {
       copy<law_values>(&history.law, value);

@@ -73,9 +73,9 @@ void FixHistory::open_energies(int atoms) {
 }
 
 template <bool wall>
-void FixHistory::book(const kernels::Block& b, int n, const Models& models) {
+void FixHistory::add(const kernels::Block& b, int n, const Models& models) {
   constexpr double share = wall ? 1.0 : 0.5;
-  const bool adheres = models.law->root >= 0, gives_back = models.compaction, rubs = models.books_friction;
+  const bool adheres = models.law->root >= 0, gives_back = models.compaction, rubs = models.adds_friction;
   const int nlocal = atom->nlocal;
   double* const rows = array_atom[0];
   const auto add = [=, &b](int k, double* row) {
@@ -94,8 +94,8 @@ void FixHistory::book(const kernels::Block& b, int n, const Models& models) {
   }
 }
 
-template void FixHistory::book<false>(const kernels::Block&, int, const Models&);
-template void FixHistory::book<true>(const kernels::Block&, int, const Models&);
+template void FixHistory::add<false>(const kernels::Block&, int, const Models&);
+template void FixHistory::add<true>(const kernels::Block&, int, const Models&);
 
 void FixHistory::close_growth(bool counts) {
   bodies_.resize(2L * rows_ + 2);  // kernels read two numbers behind the last sphere

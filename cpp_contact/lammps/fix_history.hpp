@@ -50,7 +50,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   enum Column { plastic_work, elastic_energy, loaded_contacts, friction_work, friction_energy, adhesive_work, columns };
   /// Adds the energies of n contacts to their atoms: half of a pair to each atom of this rank, all of a wall.
   template <bool wall>
-  void book(const kernels::Block& b, int n, const Models& models);
+  void add(const kernels::Block& b, int n, const Models& models);
   /// Notes the largest contact radius and overlap over R* of a block.
   void note_strain(const kernels::Block& b);
   /// Largest contact radius (0) or overlap (1) over R* of all contacts since the start.

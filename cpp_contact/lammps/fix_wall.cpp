@@ -264,7 +264,7 @@ void FixWall::finish(int n) {
       sum_[6] += b.force[axis].a[k] * b.wall_v[axis].a[k];
     }
   }
-  if (pass_.work) pair_->history()->book<true>(b, n, words_.models);
+  if (pass_.work) pair_->history()->add<true>(b, n, words_.models);
   if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);
   if (pair_->energies()) note(n);

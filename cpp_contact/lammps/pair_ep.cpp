@@ -288,7 +288,7 @@ void PairEp::finish(int n) {
   if (strain_) history_->note_strain(b);
   if (models_.compaction) history_->note_dents(b, n, false);
   kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, kernels::NothingBeside{});
-  if (pass_.work) history_->book<false>(b, n, models_);
+  if (pass_.work) history_->add<false>(b, n, models_);
   if (vflag_either) tally(n);
 }
 

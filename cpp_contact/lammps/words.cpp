@@ -161,7 +161,7 @@ void read_options(WordReader& reader, Words& words) {
     if (option == 0) {
       words.models.friction = reader.next_of("tangential", names<Frictions>());
       Frictions::each([&](auto model, int place) {
-        if (place == words.models.friction) words.models.books_friction = decltype(model)::books_work;
+        if (place == words.models.friction) words.models.adds_friction = decltype(model)::books_work;
       });
       if (words.models.friction) words.coefficients.friction = reader.next_number("friction mu", not_negative);
     } else if (option == 1) {
@@ -240,7 +240,7 @@ Models common_models(LAMMPS* lmp, const std::string& place, const Models& a, con
                   "(hybrid)");
   Models common{a.law ? a.law : b.law};
   common.friction = common_place(lmp, place, "tangential", names<Frictions>(), a.friction, b.friction);
-  common.books_friction = a.books_friction || b.books_friction;
+  common.adds_friction = a.adds_friction || b.adds_friction;
   common.compaction = a.compaction || b.compaction;
   common.rolling = common_place(lmp, place, "rolling", names<Rollings>(), a.rolling, b.rolling);
   common.cohesion = common_place(lmp, place, "cohesion", names<Cohesions>(), a.cohesion, b.cohesion);

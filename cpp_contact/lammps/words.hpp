@@ -44,7 +44,7 @@ struct Material {
 struct Models {
   const Law* law = nullptr;
   int friction = 0, rolling = 0, cohesion = 0;
-  bool books_friction = false;  // friction computes its work
+  bool adds_friction = false;  // friction computes its work
   bool compaction = false;
 };
 

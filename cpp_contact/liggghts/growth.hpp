@@ -61,7 +61,7 @@ class Growth {
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
   double factor() const { return touch_factor(largest_); }
 
-  /// Three numbers per sphere, for a loop that books by itself as `add` does.
+  /// Three numbers per sphere, for a loop that adds by itself as `add` does.
   double* sums() { return sums_->array_atom[0]; }
 
   /// What a contact of this step adds to a body.

@@ -72,7 +72,7 @@ class LawModel : public NormalModel {
 
     if (keep) {
       const bool bears = adheres<Law> ? now.radius > 0.0 : energies.stored > 0.0;
-      if (plastic_work_) ledger_.book(wall_, energies, bears, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) tally_.add(wall_, energies, bears, {s.i, s.j, atom->nlocal});
       if (contact_strain_) {
         const double share = larger_share(pair.bodies) / R_star;
         strain_.note(s.i, share * now.radius, share * contact.overlap);

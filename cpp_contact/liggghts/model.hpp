@@ -77,7 +77,7 @@ inline bool others_have_history(const Ids& ids) {
 }
 
 /// Whether the tangential model of a contact computes its work.
-inline bool books_friction(const Ids& ids) {
+inline bool adds_friction(const Ids& ids) {
   bool found = false;
   Frictions::each([&](auto m, int) { found |= m.id == ids.tangential && m.books_work; });
   return found;
@@ -136,7 +136,7 @@ class Model : public ContactModelBase {
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
     surface_.postSettings(setup, this);
-    normal_->postSettings(setup, books_friction(ids_), ids_.cohesion != COHESION_OFF);
+    normal_->postSettings(setup, adds_friction(ids_), ids_.cohesion != COHESION_OFF);
     cohesion_.postSettings(setup, this);
     tangential_.postSettings(setup, this);
     rolling_.postSettings(setup, this);

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "energy_tally.hpp"
 #include "growth.hpp"
 #include "host.hpp"
-#include "ledger.hpp"
 #include "materials.hpp"
 #include "normal_state.hpp"
 #include "strain.hpp"
@@ -45,9 +45,9 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     settings.registerOnOff("disableNormalWhenBonded", disable_when_bonded_, false);
   }
 
-  /// books_friction: the tangential model beside it computes its work.
-  void postSettings(LIGGGHTS::IContactHistorySetup* setup, bool books_friction, bool cohesion) {
-    books_friction_ = books_friction;
+  /// adds_friction: the tangential model beside it computes its work.
+  void postSettings(LIGGGHTS::IContactHistorySetup* setup, bool adds_friction, bool cohesion) {
+    books_friction_ = adds_friction;
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
     if (law_.adheres && limit_force_) refuse("limitForce", "it would take the attraction away");
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
@@ -56,7 +56,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (dissipated_energy_)
       refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
-    if (plastic_work_ && !wall_) ledger_.create(lmp, books_friction_, law_.adheres);
+    if (plastic_work_ && !wall_) tally_.create(lmp, books_friction_, law_.adheres);
     if (contact_strain_ && !wall_) LargestStrain::create(lmp);
     if (!compaction_) return;
     if (!law_.compacts) refuse("compaction", "only ep/cavity has it");
@@ -79,9 +79,9 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     width_ = m.width;
     set_materials(m);
     if (cohesive > 0.0) compare_cohesion(lmp, law_.model, width_, resistances(cohesive));
-    if (plastic_work_) ledger_.connect(lmp, law_.model, books_friction_, law_.adheres, compaction_);
+    if (plastic_work_) tally_.connect(lmp, law_.model, books_friction_, law_.adheres, compaction_);
     if (contact_strain_) strain_.connect(lmp, law_.model);
-    state_.ledger = ledger();
+    state_.tally = tally();
     if (law_.adheres) reach();
     if (wall_ && law_.compacts && !compaction_ && Growth::exists(lmp))
       fail("the pair style has compaction on, and this wall needs it, too");
@@ -95,7 +95,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   int width() const { return width_; }
   double now() const { return now_; }
   int history_size() const { return history_size_; }
-  Ledger* ledger() { return plastic_work_ ? &ledger_ : nullptr; }
+  EnergyTally* tally() { return plastic_work_ ? &tally_ : nullptr; }
   LargestStrain* strain() { return contact_strain_ ? &strain_ : nullptr; }
   Growth* growth() { return compaction_ ? &growth_ : nullptr; }
   const NormalContactState& state() const { return state_; }
@@ -104,7 +104,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   void beginPass(const SurfacesIntersectData& s) {
     const bool keep = s.computeflag && s.shearupdate;
     if (contact_strain_) strain_.keep(*lmp, neighbor->lastcall == update->ntimestep);
-    if (plastic_work_ && keep) ledger_.open(atom->nlocal);
+    if (plastic_work_ && keep) tally_.open(atom->nlocal);
     if (compaction_ && keep) growth_.close(*atom);
     if (!has_step()) return;
     const bigint expected = clock_ + (keep ? 1 : 0);
@@ -198,7 +198,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   int width_ = 0, offset_ = 0, step_slot_ = -1, growth_slot_ = -1;
   double now_ = 0.0;
   bool plastic_work_ = false, contact_strain_ = false, compaction_ = false;
-  Ledger ledger_;
+  EnergyTally tally_;
   LargestStrain strain_;
   Growth growth_;
   NormalContactState state_;

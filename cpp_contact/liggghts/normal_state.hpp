@@ -2,8 +2,8 @@
 // What passes from a law's adapter to epdem's tangential model beside it.
 #pragma once
 
+#include "energy_tally.hpp"
 #include "epdem/friction/sliding.hpp"
-#include "ledger.hpp"
 
 namespace epdem::liggghts {
 
@@ -13,7 +13,7 @@ struct NormalContactState {
   double stiffness = 0.0;     // 8 G* [Pa]
   bool is_new = false;        // the pair parted since it was last stored: its history is void
   bool flattens = false;
-  Ledger* ledger = nullptr;  // where work is booked, if computePlasticWork is on
+  EnergyTally* tally = nullptr;  // where work is added, if computePlasticWork is on
 };
 
 }  // namespace epdem::liggghts

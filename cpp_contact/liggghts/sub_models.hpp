@@ -76,7 +76,7 @@ class FrictionModel : public TangentialModelBase {
                             s.gammat > 0.0,
                             keeps(s)};
     sliding.pressed.load = s.Fn;
-    const Vec<double> F = Friction::template force<flattens>(sliding, history, Booking{normal_.ledger, s, *this});
+    const Vec<double> F = Friction::template force<flattens>(sliding, history, Booking{normal_.tally, s, *this});
     if (values > 0 && sliding.keeps) std::memcpy(s.contact_history + offset_, &history, values * sizeof(double));
     const double share = s.is_wall ? s.area_ratio : 1.0;
     const Vec<double> lever = cross(n, F);
@@ -95,15 +95,15 @@ class FrictionModel : public TangentialModelBase {
  private:
   /// Books the work of friction, if it is requested.
   struct Booking {
-    Ledger* ledger;
+    EnergyTally* tally;
     const SurfacesIntersectData& s;
     const FrictionModel& model;
 
     template <class Work>
     void friction(const Work& work) const {
-      if (!ledger) return;
+      if (!tally) return;
       const FrictionWork<double> w = work();
-      ledger->book_friction(s.is_wall, w.lost, w.stored, {s.i, s.j, model.atom->nlocal});
+      tally->add_friction(s.is_wall, w.lost, w.stored, {s.i, s.j, model.atom->nlocal});
     }
   };
 

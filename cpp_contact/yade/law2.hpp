@@ -21,7 +21,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
   // clang-format off
   YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_EpPhys, LawFunctor,
-    "Attributes of all contact laws of :yref:`EpPhys`; a simulation uses one law, a class derived from this class. With O.trackEnergy a law books plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
+    "Attributes of all contact laws of :yref:`EpPhys`; a simulation uses one law, a class derived from this class. With O.trackEnergy a law tallies plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
     ((string, tangential, "history", Attr::triggerPostLoad, "friction: off, no_history (dashpot of restitution es), history (one spring of stiffness 8 G* a up to Coulomb's limit, Cundall and Strack 1979), partial_slip or partial_slip_2 (partial slip of the contact circle by 3 or 2 nodes)"))
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
@@ -89,7 +89,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     Law2_ScGeom_EpPhys& functor;
     EpPhys& phys;
     const Interaction& contact;
-    bool books;
+    bool tallies;
 
     template <class Law, class Energies>
     void normal(const epdem::ContactConstants<Law>& pair, double R_star, const epdem::Step<Law>& now, double overlap,
@@ -98,25 +98,25 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       phys.kn = epdem::normal_stiffness(pair.law.E_star, now.radius);
       const double share = epdem::larger_share(pair.bodies) / R_star;
       if (functor.recordStrain) functor.record_strain(share * now.radius, share * overlap);
-      if (books) book(energies());
+      if (tallies) add(energies());
     }
     // a call, so that a contact without energies keeps the registers
-    [[gnu::noinline]] void book(const epdem::NormalEnergies<double>& e) const {
+    [[gnu::noinline]] void add(const epdem::NormalEnergies<double>& e) const {
       phys.elasticEnergy = e.stored;
       phys.adhesionLoss += e.adhesion_loss;
       functor.book_plastic(phys, contact, e.plastic_work_step);
-      functor.book(elastic, e.stored);
-      functor.book(adhesion, e.adhesion_loss);
+      functor.add(elastic, e.stored);
+      functor.add(adhesion, e.adhesion_loss);
       functor.share(phys, contact, &EpState::adhesionLoss, e.adhesion_loss);
     }
     template <class Work>
     void friction(const Work& work) const {
-      if (!books) return;
+      if (!tallies) return;
       const auto w = work();
       phys.frictionEnergy = w.stored;
       functor.share(phys, contact, &EpState::frictionWork, w.lost);
-      functor.book(Energy::friction, w.lost);
-      functor.book(friction_elastic, w.stored);
+      functor.add(Energy::friction, w.lost);
+      functor.add(friction_elastic, w.stored);
     }
     template <class Any>
     void step(const Any&) const {}
@@ -265,22 +265,22 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   /// Adds plastic work of a step [J].
   [[gnu::noinline]] void book_plastic(EpPhys& phys, const Interaction& contact, double work) {
     phys.plasticWork += work;
-    book(plastic, work);
+    add(plastic, work);
     share(phys, contact, &EpState::plasticWork, work);
   }
 
   /// Adds to an energy of O.energy. One thread creates all names before any thread adds.
-  [[gnu::noinline]] void book(Energy which, double value) {
+  [[gnu::noinline]] void add(Energy which, double value) {
     static constexpr const char* names[energies] = {"plasticWork", "contactElastic", "adhesionLoss", "frictionWork",
                                                     "frictionElastic"};
     static constexpr bool momentary[energies] = {false, true, false, false, true};
-    if (!booked_.load(std::memory_order_acquire)) {
+    if (!added_.load(std::memory_order_acquire)) {
 #ifdef YADE_OPENMP
 #pragma omp critical(epdem_energies)
 #endif
-      if (!booked_.load(std::memory_order_relaxed)) {
+      if (!added_.load(std::memory_order_relaxed)) {
         for (int k = 0; k < energies; ++k) scene->energy->findId(names[k], energyId_[k], momentary[k]);
-        booked_.store(true, std::memory_order_release);
+        added_.store(true, std::memory_order_release);
       }
     }
     scene->energy->add(value, names[which], energyId_[which], momentary[which]);
@@ -319,7 +319,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   static constexpr int grown(int place) { return -1 - place; }
 
   int frictionModel_ = epdem::Frictions::place(epdem::SlidingSpring::id), rollingModel_ = 0, cohesionModel_ = 0;
-  std::atomic<bool> booked_{false};
+  std::atomic<bool> added_{false};
   int energyId_[energies] = {-1, -1, -1, -1, -1};
 };
 REGISTER_SERIALIZABLE(Law2_ScGeom_EpPhys);

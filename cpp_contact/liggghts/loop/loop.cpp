@@ -63,7 +63,7 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt) {
   pass.omega = atom.omega[0];
   static_cast<ContactSettings&>(pass) = plan.settings;
   pass.dt = dt;
-  pass.work = plan.ledger != nullptr;
+  pass.work = plan.tally != nullptr;
   pass.strain = plan.strain != nullptr;
   return pass;
 }
@@ -142,11 +142,11 @@ void PairLoop::finish(const Plan& plan, int n) {
   (reach == Reach::grown ? plan.grown : kernel_)(*block_, n, pass_);
   if (plan.strain) note_strain(*plan.strain, *block_);
   const bool turns = plan.friction || plan.settings.rolling;
-  if (plan.ledger)
+  if (plan.tally)
     turns ? scatter<true, true, reach>(plan, n) : scatter<false, true, reach>(plan, n);
   else
     turns ? scatter<true, false, reach>(plan, n) : scatter<false, false, reach>(plan, n);
-  if (plan.ledger && plan.books_friction) book_friction(*plan.ledger, n);
+  if (plan.tally && plan.adds_friction) add_friction(*plan.tally, n);
 }
 
 bool PairLoop::is_attached(const Plan& plan, int i, int slot) const {
@@ -191,7 +191,7 @@ namespace {
 
 /// Beside forces: each body of a pair gets half of the energies, and one loaded contact; with growth the depths of its
 /// dents.
-template <bool books, bool adheres, bool grown>
+template <bool tallies, bool adheres, bool grown>
 struct Beside {
   const Block& b;
   double* const dents;
@@ -204,20 +204,20 @@ struct Beside {
   Beside(const Block& block, const Plan& plan)
       : b(block),
         dents(grown ? plan.growth->sums() : nullptr),
-        work(books ? plan.ledger->work() : nullptr),
-        energy(books ? plan.ledger->energy() : nullptr),
-        loaded(books ? plan.ledger->loaded() : nullptr),
-        parted(books ? plan.ledger->adhesive() : nullptr),
-        gives_back(books && plan.ledger->gives_back()) {}
+        work(tallies ? plan.tally->work() : nullptr),
+        energy(tallies ? plan.tally->energy() : nullptr),
+        loaded(tallies ? plan.tally->loaded() : nullptr),
+        parted(tallies ? plan.tally->adhesive() : nullptr),
+        gives_back(tallies && plan.tally->gives_back()) {}
 
   EPDEM_INLINE void begin(long body) {
     i = body;
-    if constexpr (books) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
+    if constexpr (tallies) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
     if constexpr (grown) cover_i = dents[3 * i], volume_i = dents[3 * i + 1], area_i = dents[3 * i + 2];
   }
 
   EPDEM_INLINE void add(int k, long j, bool owned) {
-    if constexpr (books) {
+    if constexpr (tallies) {
       const double lost = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0,
                    stored = 0.5 * b.stored_energy.a[k];
       const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
@@ -244,7 +244,7 @@ struct Beside {
   }
 
   EPDEM_INLINE void end(long) {
-    if constexpr (books) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
+    if constexpr (tallies) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
     if constexpr (grown) dents[3 * i] = cover_i, dents[3 * i + 1] = volume_i, dents[3 * i + 2] = area_i;
   }
 };
@@ -252,17 +252,17 @@ struct Beside {
 }  // namespace
 
 /// Adds forces and torques in the order of the list.
-template <bool torques, bool books, Reach reach>
+template <bool torques, bool tallies, Reach reach>
 void PairLoop::scatter(const Plan& plan, int n) {
-  Beside<books, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan);
+  Beside<tallies, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan);
   scatter_pairs<torques>(*block_, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
 }
 
 /// The work of friction with partial slip, in the order of the list.
-void PairLoop::book_friction(Ledger& ledger, int n) {
+void PairLoop::add_friction(EnergyTally& tally, int n) {
   const Block& b = *block_;
   for (int k = 0; k < n; ++k)
-    ledger.book_friction(false, b.friction_work.a[k], b.spring_energy.a[k], {b.i[k], b.j[k], atom->nlocal});
+    tally.add_friction(false, b.friction_work.a[k], b.spring_energy.a[k], {b.i[k], b.j[k], atom->nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

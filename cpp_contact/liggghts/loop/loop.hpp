@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "energy_tally.hpp"
 #include "growth.hpp"
 #include "host.hpp"
 #include "kernels/pair_list.hpp"
-#include "ledger.hpp"
 #include "strain.hpp"
 
 namespace epdem::liggghts::loop {
@@ -28,8 +28,8 @@ struct Plan {
   int friction = 0;  // place in Frictions
   ContactSettings settings{};
   bool rolls = false;               // rolling friction has a history
-  bool books_friction = false;      // friction computes its work
-  Ledger* ledger = nullptr;         // where plastic work is booked, if it is requested
+  bool adds_friction = false;       // friction computes its work
+  EnergyTally* tally = nullptr;     // where plastic work is added, if it is requested
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
   Growth* growth = nullptr;         // of the spheres, with compaction
   Kernel grown = nullptr;           // and the kernel for it
@@ -81,9 +81,9 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   bool is_attached(const Plan& plan, int i, int slot) const;
   bool closes_gap(const Plan& plan, int i, int j, int slot) const;
   void fetch(const Plan& plan, int n);
-  template <bool torques, bool books, Reach reach>
+  template <bool torques, bool tallies, Reach reach>
   void scatter(const Plan& plan, int n);
-  void book_friction(Ledger& ledger, int n);
+  void add_friction(EnergyTally& tally, int n);
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;

@@ -20,7 +20,7 @@ class Planned {
     plan_.friction = std::max(0, Frictions::place(ids_.tangential));
     plan_.settings.rolling = std::max(0, Rollings::place(ids_.rolling));
     plan_.settings.cohesion = std::max(0, Cohesions::place(ids_.cohesion));
-    plan_.books_friction = books_friction(ids_);
+    plan_.adds_friction = adds_friction(ids_);
     plan_.rolls = has_history(Rollings{}, plan_.settings.rolling);
     plan_.root = model_.normal().root_slot();
     plan_.last_step = model_.normal().history_size();
@@ -38,10 +38,10 @@ class Planned {
     plan_.settings.damped = plan_.settings.viscous = false;
     plan_.settings.torsion = model_.loop_settings().torsion;
     plan_.settings.cohesion_slides = model_.loop_settings().cohesion_slides;
-    plan_.ledger = normal.ledger();
+    plan_.tally = normal.tally();
     plan_.strain = normal.strain();
     plan_.growth = normal.growth();
-    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][wall_][plan_.ledger != nullptr];
+    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][wall_][plan_.tally != nullptr];
     plan_.width = normal.width();
     double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =

@@ -60,7 +60,7 @@ void WallLoop::compute() {
   n_ = 0;
 }
 
-/// Forces and torques in the order of LIGGGHTS's loop, and who asks for them: the ledger, forces of the wall, the mesh.
+/// Forces and torques in the order of LIGGGHTS's loop, and who asks for them: the tally, forces of the wall, the mesh.
 void WallLoop::scatter() {
   const Block& b = *block_;
   const bool turns = plan_->friction || plan_->settings.rolling;
@@ -84,11 +84,11 @@ void WallLoop::scatter() {
       }
       mesh_[k]->add_particle_contribution(i, share, to_wall, triangle_[k], v);
     }
-    if (!plan_->ledger) continue;
+    if (!plan_->tally) continue;
     const double stored = b.stored_energy.a[k];
-    plan_->ledger->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);
-    if (plan_->books_friction)
-      plan_->ledger->book_friction(true, b.friction_work.a[k], b.spring_energy.a[k], {i, i, atom->nlocal});
+    plan_->tally->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);
+    if (plan_->adds_friction)
+      plan_->tally->add_friction(true, b.friction_work.a[k], b.spring_energy.a[k], {i, i, atom->nlocal});
   }
 }
 

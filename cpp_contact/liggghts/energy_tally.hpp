@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Setting computePlasticWork: what contacts took for good and what they hold, booked to the bodies.
+// Setting computePlasticWork: what contacts took for good and what they hold, added to the bodies.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace epdem::liggghts {
 /// adhesiveWork [J] sums up what the forces lost in their jumps at touch and parting. With partial slip frictionWork
 /// [J] sums up what friction took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy
 /// belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them,
-/// so each books its own body only.
-class Ledger {
+/// so each adds to its own body only.
+class EnergyTally {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
   struct Bodies {
@@ -26,9 +26,9 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp, bool books_friction, bool adheres) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool adds_friction, bool adheres) {
     for (const char* name : {work_name, energy_name, loaded_name, friction_name, springs_name, adhesive_name}) {
-      if (!books_friction && (name == friction_name || name == springs_name)) continue;
+      if (!adds_friction && (name == friction_name || name == springs_name)) continue;
       if (!adheres && name == adhesive_name) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
@@ -36,7 +36,7 @@ class Ledger {
   }
 
   /// Before each run, for pairs and walls. gives_back: with compaction the work of one contact can be negative.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool books_friction, bool adheres,
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool adds_friction, bool adheres,
                bool gives_back = false) {
     gives_back_ = gives_back;
     work_ = find(lmp, work_name, model.c_str());
@@ -45,12 +45,12 @@ class Ledger {
     springs_ = find(lmp, springs_name, model.c_str());
     adhesive_ = find(lmp, adhesive_name, model.c_str());
     loaded_ = find(lmp, loaded_name, model.c_str());
-    if (work_ && energy_ && loaded_ && (friction_ || !books_friction) && (adhesive_ || !adheres)) return;
+    if (work_ && energy_ && loaded_ && (friction_ || !adds_friction) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
-                             (books_friction ? ", with the same tangential model"
-                              : adheres      ? ", whose model has adhesion, too"
-                                             : "");
+                             (adds_friction ? ", with the same tangential model"
+                              : adheres     ? ", whose model has adhesion, too"
+                                            : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
@@ -62,7 +62,7 @@ class Ledger {
   }
 
   /// bears: whether the contact has a force, with adhesion whether its bodies are attached.
-  void book(bool wall, const NormalEnergies<double>& e, bool bears, const Bodies& bodies) {
+  void add(bool wall, const NormalEnergies<double>& e, bool bears, const Bodies& bodies) {
     const double part = wall ? 1.0 : 0.5;
     const bool both = !wall && bodies.j < bodies.nlocal;
     if (adhesive_) {
@@ -74,7 +74,7 @@ class Ledger {
   }
 
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].
-  void book_friction(bool wall, double lost, double stored, const Bodies& bodies) {
+  void add_friction(bool wall, double lost, double stored, const Bodies& bodies) {
     const double part = wall ? 1.0 : 0.5;
     book_friction_of(bodies.i, part * lost, part * stored);
     if (!wall && bodies.j < bodies.nlocal) book_friction_of(bodies.j, part * lost, part * stored);
@@ -87,7 +87,7 @@ class Ledger {
     loaded_->vector_atom[body] += bears;
   }
 
-  /// One number per body, for a loop that books by itself as `book` does.
+  /// One number per body, for a loop that adds by itself as `add` does.
   bool gives_back() const { return gives_back_; }
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
