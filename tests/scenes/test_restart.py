@@ -16,10 +16,11 @@ import pytest
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
+from engines.lammps_decks import needs_lammps
 from epdem.base.files import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
-from epdem.engines import log
+from epdem.engines import log, restarts
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import scene_tables as tables
 from epdem.errors import CaseError
@@ -115,14 +116,14 @@ def test_ctrl_c_stops_liggghts_with_all_its_ranks_and_the_run_can_be_continued(r
     assert not children(str(out))
     assert process.returncode != 0
     assert not (out / "results.h5").exists()
-    assert resume.whole_restarts(out)[-1] > 0
+    assert restarts.whole_restarts(out, out / launcher.OUT)[-1] > 0
 
 
 class Enough(Exception):
     """The moment at which a test stops a run."""
 
 
-def stopped_run(path: Path, out: Path, share: float = 0.6) -> None:
+def stopped_run(path: Path, out: Path, share: float = 0.6, engine: str = "liggghts") -> None:
     """Run a case until that share of its steps is done."""
 
     def stop(step, steps):
@@ -130,7 +131,7 @@ def stopped_run(path: Path, out: Path, share: float = 0.6) -> None:
             raise Enough
 
     with pytest.raises(Enough):
-        run(path, out=out, report=stop)
+        run(path, engine, out=out, report=stop)
     assert not children(str(out))
 
 
@@ -141,15 +142,23 @@ EMPTY = {
 }
 
 
-@pytest.mark.parametrize("case", SCENES, ids=lambda p: p.stem)
-def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(case, tmp_path):
+@pytest.mark.parametrize(
+    ("case", "engine"),
+    [pytest.param(path, "liggghts", id=path.stem) for path in SCENES]
+    + [
+        pytest.param(path, "lammps", marks=needs_lammps, id=f"{path.stem}-lammps")
+        for path in SCENES
+        if path.stem in ("adhesive_powder", "drum_beads", "hopper_beads", "press_tablet")
+    ],
+)
+def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(case, engine, tmp_path):
     data = read_toml(case)
     output = {"rows": 40, "particles": 20, "restarts": 20, "energy": True, "loads": True}
     shutil.copytree(case.parent / "parts", tmp_path / "case/parts")  # files that a case names
     path = write_case(small(data) | {"output": output}, tmp_path / "case")
-    whole = run(path, out=tmp_path / "whole")
-    stopped_run(path, tmp_path / "parts")
-    again = run(path, out=tmp_path / "parts", resume=True)
+    whole = run(path, engine, out=tmp_path / "whole")
+    stopped_run(path, tmp_path / "parts", engine=engine)
+    again = run(path, engine, out=tmp_path / "parts", resume=True)
     assert 0 < again.resumed_from < again.plan.steps
     a, b = (results.read(tmp_path / name / "results.h5") for name in ("whole", "parts"))
     assert set(a.tables) == set(b.tables)
@@ -214,7 +223,7 @@ def test_without_a_restart_file_nothing_is_continued(tmp_path):
     assert not (tmp_path / "out").exists()
     p = write_deck(load(path), tmp_path / "empty")
     with pytest.raises(CaseError, match="no restart file"):
-        resume.choose(p, tmp_path / "empty")
+        restarts.choose(p, tmp_path / "empty", tmp_path / "empty" / launcher.OUT, tables.damaged)
 
 
 def steps_of(folder: Path, pattern: str) -> list[int]:
@@ -227,7 +236,7 @@ def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(
     _, folder = hopper
     path, out = tmp_path / "case.toml", tmp_path / "out"
     shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
-    p, newest = plan(load(path)), resume.whole_restarts(out)[-1]
+    p, newest = plan(load(path)), restarts.whole_restarts(out, out / launcher.OUT)[-1]
     lost = max(step for step in steps_of(out, "particles.*.bin") if step < newest and step % p.frames == 0)
     older = newest - p.frames  # a phase counts the steps between restart files from its begin
     for step in steps_of(out, "restart.*.bin"):
@@ -241,7 +250,7 @@ def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(
     else:
         frame.write_bytes(frame.read_bytes()[:-100])
     if place.startswith("after"):
-        assert resume.choose(p, out) == (older, [])
+        assert restarts.choose(p, out, out / launcher.OUT, tables.damaged) == (older, [])
         return
     outcome = run(path, out=out, resume=True, force=True)  # a file that was changed may be the user's
     assert [w for w in outcome.warnings if f"frames of step {lost} are missing or not whole" in w]
@@ -256,5 +265,5 @@ def test_restart_files_are_kept_until_the_engine_has_gone_on_after_a_later_one(t
     for step in (100, 200, 300, 400):
         (tmp_path / f"restart.{step}.bin").touch()
     for step, kept in ((100, [100, 200, 300, 400]), (250, [200, 300, 400]), (300, [200, 300, 400]), (900, [400])):
-        resume.prune(tmp_path, step)
+        restarts.prune(tmp_path, step)
         assert steps_of(tmp_path, "restart.*.bin") == kept

@@ -17,6 +17,7 @@ from ..scenes.plan import PhaseSteps, ScenePlan
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
+WRITE_RESTART = ("write_restart restart.*.bin",)
 SKIN_OF_GROWTH = 0.2  # of the largest radius, with compaction: lists, made anew after half of it, hold 0.1 of growth
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 

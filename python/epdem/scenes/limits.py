@@ -80,8 +80,6 @@ def refuse_combinations(case: SceneCase, s: Parts) -> None:
         raise CaseError(
             f"scene.wall.{min(both)}: a wall that a force drives has no angular_velocity; remove one of both"
         )
-    if case.output.restarts and any(not isinstance(move, LinearMove) for _, move in moves):
-        raise CaseError("output.restarts: only walls with linear motions go on where they were; remove it")
     for w in s.wall:
         if not isinstance(w, MeshWall):
             continue

@@ -16,11 +16,14 @@ from ...impacts.engine import Trajectory, check_features
 from ...impacts.experiment import Body
 from ...impacts.plan import Plan, approach
 from ...jobs.engine import Feature, Report
+from ...jobs.stage import Tables
+from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host, impact_head
 from ..input_script import atom_types, impact_files
-from . import launcher, scene_deck, scene_tables, words
+from ..restarts import pruning
+from . import launcher, resume, scene_deck, scene_tables, words
 
 PATH, END, LOG = "path.txt", "end.txt", "log.lammps"
 
@@ -60,9 +63,10 @@ class Lammps(Host):
     ranks = most_ranks()
     out = launcher.OUT
     scene_deck, scene_tables = scene_deck, scene_tables
-    leftovers: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt")
+    leftovers: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt", "restart.*.bin", "in.resume")
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
+        | {Feature.RESTART}
     )
 
     @property
@@ -113,7 +117,11 @@ class Lammps(Host):
         return Trajectory(plan.time_step, overlap, fz[:, : plan.n].T, velocity, {"total": wall}, tangential, spin)
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
+        launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=pruning(folder, report))
+
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+        resumed = resume.resume(job, folder, ranks=ranks, report=report)
+        return self.read(job, folder, without=resumed.lost), resumed
 
 
 def contact(plan: Plan, body: Body, strength: float) -> str:

@@ -16,7 +16,7 @@ from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse, scene_head
 from ..input_script import StopCondition, default_skin, row_words, stop_condition, wall_id
 from . import words
-from .scene_walls import DeckWall, meshes, motions, plane, plate_place
+from .scene_walls import DeckWall, meshes, motions, plane, plate_place, restart_commands
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -32,12 +32,10 @@ def check(p: ScenePlan) -> None:
     m, out = p.model, p.output
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
-    refuse("output.restarts", out.restarts, "a LAMMPS scene is not continued")
     refuse("output.vtk", out.vtk, "there is no VTK output; output.particles holds the same")
     refuse("output.pictures", out.pictures, "there are none")
     for fill in p.insertions:
         refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")
-    refuse("scene.phase.record", any(not phase.case.record for phase in p.phases), "every phase has frames")
     if not len(placement.spheres(p)):
         raise CaseError(f"scene: no sphere is there at the start, LAMMPS needs one; {LIGGGHTS}")
 
@@ -46,11 +44,14 @@ def check(p: ScenePlan) -> None:
 class PhaseCommands:
     """A phase. data: file of the spheres that come with it; None: none do. placed: spheres that were placed before.
 
-    fills: key, id, and limits of the region that has to be empty. gates: planes that come with it. commands: which set
-    walls in motion. ends: fixes that end with it.
+    steps: that are left. time_step [s]: None: that of the phase before. fills: key, id, and limits of the region that
+    has to be empty. gates: planes that come with it. commands: which set walls in motion. ends: fixes that end with it.
+    restart_commands: where a restart file is due.
     """
 
     run: PhaseSteps
+    steps: int
+    time_step: float | None
     data: str | None
     placed: int
     fills: tuple[tuple[str, str, str], ...]
@@ -58,6 +59,15 @@ class PhaseCommands:
     commands: tuple[str, ...]
     ends: tuple[str, ...]
     stop: StopCondition | None
+    restart_commands: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Restart:
+    """Where a run continues. file: the restart file; gates: planes that are there beside the walls of all phases."""
+
+    file: str
+    gates: tuple[DeckWall, ...]
 
 
 @dataclass(frozen=True)
@@ -85,22 +95,26 @@ class SceneDeck:
     contact_walls: tuple[str, ...]
     row_words: tuple[str, ...]
     columns: tuple[str, ...]
+    restart: Restart | None = None
 
 
 def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
     gates = {w.name: plane(p, w) for w in p.scene.gates}
     first = p.phases[0].name
     placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
-    for run in p.phase_steps:
+    for number, run in enumerate(p.phase_steps):
         yield PhaseCommands(
             run=run,
+            steps=run.steps,
+            time_step=run.own_time_step,
             data=_data_file(p, run.name),
             placed=placed,
             fills=tuple(_fills(p, run.name)),
             gates=tuple(gates[name] for name in run.added),
-            commands=tuple(motions(p, run.before, run.phase)) if run.before else (),
+            commands=tuple(motions(p, number)) if number else (),
             ends=tuple(wall_id(name) for name in run.removed),
             stop=stop_condition(p, run, partial(plate_place, p)),
+            restart_commands=restart_commands(p, number),
         )
         placed += sum(b.phase == run.name for b in p.scene.later)
         placed += sum(f.count for f in p.insertions if f.phase == run.name != first)
@@ -120,7 +134,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         settings=" energies" * (p.output.energy or p.contacts > 0) + " strain",
         materials=tuple((i, words.of_type(p, i), words.options(p, i, i)) for i in types),
         pairs=tuple((i, j, words.options(p, i, j)) for i, j in combinations(types, 2) if _is_special(p, i, j)),
-        motions=tuple(motions(p, None, p.phases[0])),
+        motions=tuple(motions(p, 0)),
         walls=(*(plane(p, w) for w in p.scene.planes), *meshes(p)),
         loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
         frozen=tuple(n for n, s in enumerate(p.scene.table, 1) if s.frozen),

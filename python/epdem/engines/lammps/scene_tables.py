@@ -2,6 +2,7 @@
 """The tables of a scene from LAMMPS's files. Only this module reads their formats."""
 
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,35 +25,55 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     return found
 
 
-def _frames(
-    p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], without: Collection[int]
-) -> pd.DataFrame:
-    def read(path: Path) -> pd.DataFrame:
-        lines = path.read_text(encoding="utf-8").split("\n")
-        values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
-        if len(lines) != len(values) + 1:
-            raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
-        return pd.DataFrame(values, columns=names)
+def _frame(path: Path, names: list[str]) -> pd.DataFrame:
+    """The table of a file. Raises OSError, ValueError if it is not whole."""
+    lines = path.read_text(encoding="utf-8").split("\n")
+    values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
+    if len(lines) != len(values) + 1:
+        raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
+    return pd.DataFrame(values, columns=names)
 
-    return frames(p, folder, f"{kind}.{{}}.txt", every, read, without)
+
+def _kinds(p: ScenePlan) -> dict[str, tuple[int, list[str]]]:
+    """Steps between two frames and columns of each kind of file."""
+    values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
+    kinds = {"particles": (p.frames, columns.columns_of_frames(p)), "contacts": (p.contacts, ["one", "two", *values])}
+    for name in contact_walls(p):
+        kinds[f"contacts_{wall_id(name)}"] = p.contacts, ["i", *values, *columns.NORMAL]
+    return {kind: (every, names) for kind, (every, names) in kinds.items() if every}
+
+
+def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
+    """Steps up to `upto` of which a frame is missing or not whole."""
+    steps = set()
+    for kind, (every, names) in _kinds(p).items():
+        for step in (n for n in p.frame_steps(every) if n <= upto):
+            try:
+                _frame(folder / f"{kind}.{step}.txt", names)
+            except (OSError, ValueError):
+                steps.add(step)
+    return sorted(steps)
+
+
+def _frames(p: ScenePlan, folder: Path, kind: str, without: Collection[int]) -> pd.DataFrame:
+    every, names = _kinds(p)[kind]
+    return frames(p, folder, f"{kind}.{{}}.txt", every, partial(_frame, names=names), without)
 
 
 def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Every sphere of every frame."""
-    names = columns.columns_of_frames(p)
-    return columns.whole(p, _frames(p, folder, "particles", p.frames, names, without), folder)
+    return columns.whole(p, _frames(p, folder, "particles", without), folder)
 
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame."""
-    values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
-    pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", *values], without)
+    pairs = _frames(p, folder, "contacts", without)
     pairs.loc[pairs["one"] > pairs["two"], columns.FORCE] *= -1.0
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
     across = pairs["added_overlap"] if p.model.compaction else 0.0
     found = [pairs[(pairs["overlap"] + across > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
     for name in contact_walls(p):
-        table = _frames(p, folder, f"contacts_{wall_id(name)}", p.contacts, ["i", *values, *columns.NORMAL], without)
+        table = _frames(p, folder, f"contacts_{wall_id(name)}", without)
         found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")

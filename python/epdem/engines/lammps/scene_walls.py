@@ -2,7 +2,7 @@
 """Walls of a scene as fixes over planes and regions of LAMMPS, and the variables that move the regions."""
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ...base.rendering import number
@@ -26,7 +26,7 @@ from ...scenes.limits import PressedBed
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import spans, surface_rotation
 from ..host import LIGGGHTS, refuse
-from ..input_script import wall_id
+from ..input_script import WRITE_RESTART, wall_id
 from . import words
 
 
@@ -192,27 +192,68 @@ def _motion_words(p: ScenePlan, name: str) -> str:
     return " ".join(found)
 
 
-def motions(p: ScenePlan, before: Phase | None, phase: Phase) -> list[str]:
-    """Commands that set the walls of triangles in motion at the begin of a phase, or stop them."""
+def _begin(p: ScenePlan, name: str, number: int) -> int:
+    """The number of the phase in which a wall got the motion that it has in the phase of a number."""
+    moves = [phase.moves.get(name) for phase in p.phases]
+    while number and moves[number] == moves[number - 1]:
+        number -= 1
+    return number
+
+
+def _state(p: ScenePlan, name: str, number: int) -> dict[str, str]:
+    """Variables, and their styles, that hold where and when the motion of a wall in a phase began, and its way."""
+    keys, id = _changing(p, name), wall_id(name)
+    places = [f"{id}_{key}0" for key in keys] if _begin(p, name, number) else []
+    found = dict.fromkeys([f"{id}_begin", *places] if keys else [], "equal")
+    return found | ({f"{id}_way": "internal"} if isinstance(p.phases[number].moves.get(name), PressMove) else {})
+
+
+def _formulas(p: ScenePlan, name: str, number: int) -> Iterator[str]:
+    """Commands that tie a wall to its motion in a phase."""
+    id, phase = wall_id(name), p.phases[number]
+    move, rates = phase.moves.get(name), _rates(p, name, phase)
+    T = f"v_{id}_way" if isinstance(move, PressMove) else f"(time-v_{id}_begin)"
+    for key in _changing(p, name):
+        formula = rates[key].replace("T", T) if key in rates else ""
+        terms = [f"v_{id}_{key}0"] * (_begin(p, name, number) > 0) + [formula] * bool(formula)
+        yield f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}"
+    if isinstance(move, PressMove):
+        yield from _servo(id, move)
+
+
+def motions(p: ScenePlan, number: int) -> list[str]:
+    """Commands that set the walls of triangles in motion at the begin of the phase of a number, or stop them."""
     found = []
     for name in p.scene.meshes:
-        keys, id, rates = _changing(p, name), wall_id(name), _rates(p, name, phase)
-        move, last = phase.moves.get(name), before.moves.get(name) if before else None
-        if not keys or (before and move == last):
+        keys, id = _changing(p, name), wall_id(name)
+        if not keys or _begin(p, name, number) != number:
             continue
-        T = f"v_{id}_way" if isinstance(move, PressMove) else f"(time-v_{id}_begin)"
-        if isinstance(last, PressMove):
+        if number and isinstance(p.phases[number - 1].moves.get(name), PressMove):
             found.append(f"unfix press_{id}")
-        if before:  # the place so far, before the time of the motion begins anew
+        if number:  # the place so far, before the time of the motion begins anew
             found += [f"variable {id}_{key}0 equal $(v_{id}_{key}:%.17g)" for key in keys]
         found.append(f"variable {id}_begin equal $(time:%.17g)")
-        for key in keys:
-            formula = rates[key].replace("T", T) if key in rates else ""
-            terms = [f"v_{id}_{key}0"] * (before is not None) + [formula] * bool(formula)
-            found.append(f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}")
-        if isinstance(move, PressMove):
-            found += _servo(id, move)
+        if isinstance(p.phases[number].moves.get(name), PressMove):
+            found.append(f"variable {id}_way internal 0.0")
+        found += _formulas(p, name, number)
     return found
+
+
+def motions_again(p: ScenePlan, number: int, values: Mapping[str, str]) -> list[str]:
+    """Commands that continue the motions of a phase from the values of their variables."""
+    found = []
+    for name in p.scene.meshes:
+        styles = _state(p, name, number)
+        found += [f"variable {variable} {style} {values[variable]}" for variable, style in styles.items()]
+        found += _formulas(p, name, number) if styles else []
+    return found
+
+
+def restart_commands(p: ScenePlan, number: int) -> tuple[str, ...]:
+    """Commands where a restart file is due in a phase: they print the variables of motions, which the file lacks."""
+    names = [variable for name in p.scene.meshes for variable in _state(p, name, number)]
+    values = " ".join(f"{name}=$(v_{name}:%.17g)" for name in names)
+    return (f"print 'motions at step $(step): {values}'",) * bool(names) + WRITE_RESTART
 
 
 def plate_place(p: ScenePlan, bed: PressedBed) -> str:
@@ -225,7 +266,6 @@ def _servo(id: str, move: PressMove) -> Iterator[str]:
     """Commands that move a wall: its speed over the highest speed is the relative error of its force, at most 1."""
     force = "+".join(f"f_{id}[{k}]*{number(u)}" for k, u in enumerate(move.unit_direction, 1) if u)
     error = f"v_{id}_error"
-    yield f"variable {id}_way internal 0.0"
     yield f"variable {id}_error equal 1-({force})/{number(move.force)}"
     speed = f"({error}*(abs({error})<=1)+({error}>1)-({error}<-1))*{number(move.highest_speed)}"
     yield f"variable {id}_speed equal {speed}"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
+from ...case.walls import LinearMove
 from ...errors import CaseError
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
@@ -121,6 +122,16 @@ def _refuse_skin(p: ScenePlan) -> None:
         )
 
 
+def _refuse_restarts(p: ScenePlan) -> None:
+    """Raise CaseError for motions that LIGGGHTS's restart files do not hold."""
+    others = any(not isinstance(move, LinearMove) for phase in p.phases for move in phase.moves.values())
+    if p.restarts and others:
+        raise CaseError(
+            "output.restarts: in LIGGGHTS only walls with linear motions go on where they were; remove it or use "
+            "--engine lammps"
+        )
+
+
 @dataclass(frozen=True)
 class SceneDeck:
     """Values of the templates of a scene.
@@ -160,6 +171,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
     _refuse_skin(p)
+    _refuse_restarts(p)
     m = p.model
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut, commands = p.case.numerics.processors, phases(p)

@@ -17,7 +17,7 @@ from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
 from ...scenes.walls import surface_rotation
-from ..input_script import StopCondition, stop_condition, torque_origin, wall_id
+from ..input_script import WRITE_RESTART, StopCondition, stop_condition, torque_origin, wall_id
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
@@ -104,7 +104,7 @@ class PhaseCommands:
 
     steps: that are left. gates: planes that come with the phase. particles: spheres that come with it. power: formula
     of the power of all that moves. vibrations: (wall, formula of the angle at the begin of the phase) of each vibration
-    whose power is counted.
+    whose power is counted. restart_commands: where a restart file is due.
     """
 
     run: PhaseSteps
@@ -118,6 +118,7 @@ class PhaseCommands:
     power: str
     vibrations: tuple[tuple[str, str], ...]
     stop: StopCondition | None
+    restart_commands: tuple[str, ...] = WRITE_RESTART
 
 
 def primes() -> Iterator[int]:

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A scene in LAMMPS whose walls vibrate, press, turn and stop continues to the bit from every restart file."""
+
+import numpy as np
+import pytest
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+from test_parts_motions import BOX, PLATE
+
+from engines.lammps_decks import needs_lammps
+from epdem.case.scene import parse
+from epdem.engines import log, scene_engine
+from epdem.engines.lammps import launcher, resume
+from epdem.engines.lammps import scene_tables as tables
+from epdem.errors import CaseError
+from epdem.scenes.engine import write_deck
+from epdem.scenes.plan import plan
+
+pytestmark = needs_lammps
+SHAKE = {"wall": "table", "kind": "vibrate", "amplitude": ["0.2 mm", "0 m", "0.5 mm"], "frequency": "60 Hz"}
+PRESS = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "0.2 N", "highest_speed": "0.1 m/s"}
+LIFT = {"wall": "table", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.02 m/s"]}
+TURN = {"wall": "stirrer", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "origin": ["0 m"] * 3, "rate": "40 rad/s"}
+
+
+def moving(**output) -> dict:
+    """A bed on a table that shakes, is lifted and stops, under a plate that a force drives, around a stirrer; a plane
+    that is there in two phases, spheres that come with others, two phases that a condition ends, one without frames."""
+    table = PLATE | {"name": "table", "center": ["0 mm", "0 mm", "2 mm"], "size": ["16 mm", "17 mm"]}
+    lid = PLATE | {"center": ["0 mm", "0 mm", "36 mm"]}
+    stirrer = PLATE | {"name": "stirrer", "axis": "x", "center": ["0 mm", "0 mm", "6 mm"], "size": ["8 mm", "5 mm"]}
+    gate = FLOOR | {"name": "gate", "at": "1 mm", "phases": ["shake", "press"]}
+    bed = BED | {"region": BED["region"] | {"z": ["10 mm", "34 mm"]}}
+    ball = {"name": "ball", "material": "steel", "radius": "1.5 mm", "position": ["0 m", "0 m", "33 mm"]}
+    phases = [
+        {"name": "shake", "duration": "0.4 s", "until": {"kinetic_energy": "2 uJ", "after": "30 ms"}, "move": [SHAKE]},
+        {
+            "name": "press",
+            "duration": "0.4 s",
+            "until": {"wall": "lid", "force": "0.1 N"},
+            "move": [SHAKE, PRESS, TURN],
+        },
+        {"name": "hold", "duration": "20 ms", "move": [PRESS, TURN], "record": False, "time_step": "8e-6 s"},
+        {"name": "lift", "duration": "20 ms", "move": [LIFT]},
+        {"name": "rest", "duration": "15 ms", "move": [TURN]},
+    ]
+    found = parts(wall=[BOX, table, lid, stirrer, gate], fill=[bed], body=[ball | {"phase": "lift"}], phase=phases)
+    return found | {"viscous": {"restitution": 0.5}, "output": {"rows": 60, "particles": 60, "loads": True} | output}
+
+
+def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
+    tool, p = scene_engine("lammps"), plan(parse(moving(restarts=60)))
+    write_deck(tool, p, tmp_path)
+    launcher.run("in.scene", tmp_path)
+    out = tmp_path / launcher.OUT
+    ends = log.ends(out)
+    assert not log.not_reached(out) and [*ends] == [phase.name for phase in p.phases]
+    ended = p.ended(ends)
+    whole = tables.particles(ended, tmp_path), tables.rows(ended, out)
+    assert (whole[1]["lid_force_z"] > 0.1).any()
+    steps = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))[:-1]
+    at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")}
+    assert len(steps) > 30 and at_ends <= {*steps}
+    for step in sorted({*steps[3::9]} | at_ends):
+        resume.write_resume(p, tmp_path, step)
+        launcher.run("in.resume", tmp_path, append=True)
+        assert log.ends(out) == ends, step
+        assert tables.particles(ended, tmp_path).equals(whole[0]), step
+        again = tables.rows(ended, out)
+        np.testing.assert_array_equal(again, whole[1], err_msg=str(step))
+
+
+def test_motions_that_liggghts_cannot_continue_are_refused_there():
+    with pytest.raises(CaseError, match=r"output.restarts: in LIGGGHTS only walls with linear motions .* lammps"):
+        scene_engine("liggghts").check(plan(parse(moving(restarts=5))))
+
+
+def test_a_damaged_frame_is_written_again(tmp_path):
+    path = write_case(moving(restarts=6), tmp_path)
+    whole = run(path, "lammps", out=tmp_path / "whole")
+    first = sorted((tmp_path / "whole").glob("restart.*.bin"))
+    assert len(first) <= 2  # of those that the engine has gone on after only the newest is kept
+    later = tmp_path / "whole" / f"particles.{whole.plan.steps}.txt"
+    text = later.read_text()
+    later.write_text(text[:-200])
+    again = run(path, "lammps", out=tmp_path / "whole", resume=True, force=True)
+    assert again.results.particles.equals(whole.results.particles) and later.read_text() == text
