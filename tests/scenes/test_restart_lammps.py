@@ -21,6 +21,7 @@ SHAKE = {"wall": "table", "kind": "vibrate", "amplitude": ["0.2 mm", "0 m", "0.5
 PRESS = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "0.2 N", "highest_speed": "0.1 m/s"}
 LIFT = {"wall": "table", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.02 m/s"]}
 TURN = {"wall": "stirrer", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "origin": ["0 m"] * 3, "rate": "40 rad/s"}
+STIR = [PRESS, TURN]
 
 
 def moving(**output) -> dict:
@@ -40,7 +41,7 @@ def moving(**output) -> dict:
             "until": {"wall": "lid", "force": "0.1 N"},
             "move": [SHAKE, PRESS, TURN],
         },
-        {"name": "hold", "duration": "20 ms", "move": [PRESS, TURN], "record": False, "time_step": "8e-6 s"},
+        {"name": "hold", "duration": "20 ms", "move": STIR, "record": False, "time_step": "8e-6 s"},
         {"name": "lift", "duration": "20 ms", "move": [LIFT]},
         {"name": "rest", "duration": "15 ms", "move": [TURN]},
     ]
