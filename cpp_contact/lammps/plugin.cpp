@@ -4,6 +4,7 @@
 #include <string>
 
 #include "error.h"
+#include "fix_motion.hpp"
 #include "fix_wall.hpp"
 #include "pair_ep.hpp"
 
@@ -57,6 +58,7 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
         reinterpret_cast<void*>(&create_pair<PairEp>));
   style("fix", FixHistory::style_name, "history of elastic-plastic contacts",
         reinterpret_cast<void*>(&create_fix<FixHistory>));
+  style("fix", FixMotion::style_name, "motion of spheres", reinterpret_cast<void*>(&create_fix<FixMotion>));
   style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes",
         reinterpret_cast<void*>(&create_fix<FixWallPlanes>));
   style("fix", FixWallRegion::style_name, "elastic-plastic contacts with a region",

@@ -7,7 +7,7 @@ during contact; `epdem verify crosscheck` examines e_n of each law by swap, sort
 
 import numpy as np
 import pytest
-from lammps_decks import DUMP, THORNTON, column, needs_lammps, run, spheres
+from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
 
 pytestmark = needs_lammps
 
@@ -214,3 +214,27 @@ run 1500
     rises = np.flatnonzero((speed[1:] > 0) & (speed[:-1] <= 0))
     assert len(rises) >= 3 and "Neighbor list builds = 0" in one
     assert np.array_equal(speed, column(each, "v_v"))
+
+
+@pytest.mark.parametrize("group", ["all", "some", "first"])
+def test_the_motion_has_the_bits_of_nve_sphere(group, tmp_path):
+    """Of all spheres, of every third one, and of those of atom_modify first."""
+    groups = {"all": "", "some": "group some id 1:2000:3\n", "first": "group first id 1:700\natom_modify first first\n"}
+    deck = bed(more=groups[group]).replace("fix motion all", f"fix motion {group}")
+    _, theirs = run(deck + "run 300\n" + DUMP, tmp_path / "theirs")
+    _, ours = run(deck.replace("nve/sphere", "nve/sphere/ep") + "run 300\n" + DUMP, tmp_path / "ours")
+    assert (ours == theirs).all() and np.abs(ours[:, 7:]).max() > 1.0
+
+
+@pytest.mark.parametrize(
+    ("style", "words", "sentence"),
+    [
+        ("sphere", "nve/sphere/ep disc", "fix nve/sphere/ep: disc is not known; it has no words"),
+        ("atomic", "nve/sphere/ep", "fix nve/sphere/ep needs atom_style sphere"),
+    ],
+)
+def test_the_motion_refuses_words_and_points(style, words, sentence, tmp_path):
+    code, said = lammps(
+        f"atom_style {style}\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\nfix m all {words}\n", tmp_path
+    )
+    assert code == 1 and sentence in said
