@@ -25,15 +25,16 @@ struct Block {
   double* history[block_size + most_lanes];
   const double* material[block_size + most_lanes];  // constants of the pair of types
   Line radius_i, radius_j, mass_i, mass_j;
-  Line frozen_i, frozen_j;                                     // 1 or 0
-  Line force[3], torque_i[3], torque_j[3];                     // on i; the force on j is its negative
-  Line plastic_work_step, stored_energy, contact_radius;       // [J], [J], [m]
-  Line friction_work, spring_energy;                           // of friction in this step, elastic at its end [J]
-  Line adhesion_loss;                                          // with adhesion: lost in jumps in this step [J]
-  double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest so far, over R*, times the larger share
-  Line overlap, from_wall[3], wall_v[3];                       // of a wall: as the host found them
-  Line cover_i, cover_j, volume_i, volume_j, dented_area;      // with compaction: Dents
-  double unused_history[64];                                   // of the lanes behind the last contact
+  Line frozen_i, frozen_j;                                // 1 or 0
+  Line force[3], torque_i[3], torque_j[3];                // on i; the force on j is its negative
+  Line plastic_work_step, stored_energy, contact_radius;  // [J], [J], [m]
+  Line friction_work, spring_energy;                      // of friction in this step, elastic at its end [J]
+  Line adhesion_loss;                                     // with adhesion: lost in jumps in this step [J]
+  double radius_ratio[most_lanes],
+      overlap_ratio[most_lanes];                           // largest w a/R* and w overlap/R* so far, w the larger share
+  Line overlap, from_wall[3], wall_v[3];                   // of a wall: as the host found them
+  Line cover_i, cover_j, volume_i, volume_j, dented_area;  // with compaction: Dents
+  double unused_history[64];                               // of the lanes behind the last contact
 };
 
 /// What all contacts of a pass have in common.
@@ -44,7 +45,7 @@ struct Pass : ContactSettings {
   bool several;                 // pairs of materials in this block; else the pair of its first contact
   bool freeze;                  // whether a group of atoms is frozen
   bool work;                    // energies are requested
-  bool strain;                  // the largest contact radius and overlap over R* are requested
+  bool strain;                  // the largest w a/R* and w overlap/R* are requested
 };
 
 /// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads (`pad`).

@@ -51,9 +51,9 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Adds the energies of n contacts to their atoms: half of a pair to each atom of this rank, all of a wall.
   template <bool wall>
   void add(const kernels::Block& b, int n, const Models& models);
-  /// Notes the largest contact radius and overlap over R* of a block.
+  /// Notes the largest w a/R* and w overlap/R* of a block.
   void note_strain(const kernels::Block& b);
-  /// Largest contact radius (0) or overlap (1) over R* of all contacts since the start.
+  /// Largest w a/R* (0) or w overlap/R* (1) of all contacts since the start.
   double compute_vector(int which) override;
   /// At the start of an evaluation that counts.
   void open_energies(int atoms);

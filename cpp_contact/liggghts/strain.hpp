@@ -10,7 +10,7 @@
 
 namespace epdem::liggghts {
 
-/// Per-atom property contactStrain of two values, contact radius over R* and overlap over R*. Only their maxima over
+/// Per-atom property contactStrain of two values, w a/R* and w overlap/R*. Only their maxima over
 /// all atoms have a meaning: the largest of all contacts and steps so far. A global property keeps the maxima of this
 /// rank, of pairs and walls, and a body of the rank holds them for outputs and restart files: the body that reached
 /// them may leave the simulation.
@@ -38,7 +38,7 @@ class LargestStrain {
     for (int i = 0; i < lmp->atom->nlocal; ++i) note(held_->array_atom[i][0], held_->array_atom[i][1]);
   }
 
-  /// Contact radius and overlap over R* of one contact or of several, of which `body` is one that this rank owns.
+  /// w a/R* and w overlap/R* of one contact or of several, of which `body` is one that this rank owns.
   void note(int body, double radius, double overlap) {
     note(radius, overlap);
     hold(body);
