@@ -7,10 +7,11 @@ from parts_cases import BED, CASES, FLOOR, own, parts
 from scene_runs import run, write_case
 from test_parts_motions import PLATE, assert_the_lid_shakes_on, moved
 
-from engines.lammps_decks import needs_lammps
+from engines.lammps_decks import column, lammps, needs_lammps
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import scene_deck as lammps_scene
+from epdem.engines.yade import scene_deck as yade_scene
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
@@ -230,3 +231,29 @@ def test_regions_of_a_profile_are_not_named_as_a_wall():
     deck = lammps_scene.files(plan(parse(parts(wall=[FLOOR, cup, PLATE | {"name": "a_1"}]))))["in.scene"]
     regions = [line.split()[1] for line in deck.splitlines() if line.startswith("region ")]
     assert len(regions) == len({*regions}) == 4
+
+
+def test_borders_of_ranks_that_move_change_nothing_but_the_time(tmp_path):
+    """A bed in the lower half of its room, on two ranks above one another, and on one."""
+    data = moved("linear") | {"numerics": {"time_step": "1e-5 s", "processors": "z", "balance": 200}}
+    data["scene"]["phase"] = [{"name": "fall", "duration": "30 ms"}]
+    data["scene"]["fill"][0]["region"]["z"] = ["0 mm", "14 mm"]
+    data["output"] = {"rows": 30, "particles": 3, "energy": True}
+    path = write_case(data, tmp_path)
+    two = run(path, engine="lammps", out=tmp_path / "two", ranks=2).results
+    one = run(path, engine="lammps", out=tmp_path / "one").results
+    a, b = (found.particles.set_index(["step", "id"]).sort_index() for found in (two, one))
+    assert np.abs(a[["x", "y", "z"]] - b[["x", "y", "z"]]).max().max() < 1e-9
+    assert two.rows["kinetic_energy"].to_numpy() == pytest.approx(one.rows["kinetic_energy"].to_numpy(), rel=1e-6)
+    deck = (tmp_path / "two/in.scene").read_text()
+    code, out = lammps(deck.replace("custom step", "custom step f_balance"), tmp_path / "two", ranks=2)
+    assert code == 0 and column(out, "f_balance")[-1] < 1.2
+    low, high = plan(load(path)).box[4:]
+    upper = (last_frame(two.particles)["z"] > 0.5 * (low + high)).mean()
+    assert upper < 0.2  # so that borders at rest would give one rank most of the spheres
+
+
+def test_hosts_whose_ranks_do_not_move_leave_balance_out():
+    p = plan(parse(parts() | {"numerics": {"time_step": "2e-5 s", "balance": 200}}))
+    for notes in (scene_engine("liggghts").check(p), yade_scene.notes(p)):
+        assert [note for note in notes if "numerics.balance" in note and "left out" in note]

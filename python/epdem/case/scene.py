@@ -106,7 +106,8 @@ class SceneNumerics(Frozen):
     """`error`: limit of the error of e_n at speeds up to `highest_speed` (default: the highest of the scene).
 
     skin: by how much neighbour lists reach farther than contacts [m]. processors: axes along which ranks divide the
-    room. sort_interval: steps after which the next search sorts the spheres in memory by their positions.
+    room. balance: steps after which the borders of ranks move so that all have as many spheres. sort_interval: steps
+    after which the next search sorts the spheres in memory by their positions.
     None of them changes results beyond round-off (docs/speed.md).
     """
 
@@ -115,6 +116,7 @@ class SceneNumerics(Frozen):
     time_step: Time | None = None
     skin: Length | None = None
     processors: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] | None = None
+    balance: Annotated[int, Field(ge=1)] | None = None
     sort_interval: Annotated[int, Field(ge=1)] | None = None
     seed: Annotated[int, Field(ge=1, le=1000)] = 1
 

@@ -27,6 +27,7 @@ from .macros import ContactWords
 from .properties import HARD, SOFT, Property, of_law, tangential
 
 PATH, END = "path.bin", "end.bin"
+NO_BALANCE = "numerics.balance: the borders of ranks in LIGGGHTS do not move, it was left out"
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,10 @@ class Liggghts(Host):
     def properties(self, plan: Plan) -> tuple[Property, ...]:
         """The material properties of the deck, for this model."""
         return of_law(plan)
+
+    def check_scene(self, plan: ScenePlan) -> list[str]:
+        super().check_scene(plan)
+        return [NO_BALANCE] if plan.case.numerics.balance else []
 
     def impact_files(self, plan: Plan) -> dict[str, str]:
         return impact_files(self.template, self.deck(plan), plan)

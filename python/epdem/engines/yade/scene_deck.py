@@ -35,7 +35,7 @@ Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
-NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
+NO_RANKS = "numerics.processors, numerics.balance: a scene in YADE has one rank, they were left out"
 NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
 
 
@@ -56,7 +56,7 @@ def check(p: ScenePlan) -> None:
 
 def notes(p: ScenePlan) -> list[str]:
     """Sentences on the parts of a case that a YADE scene leaves out."""
-    found = [NO_RANKS] if p.case.numerics.processors else []
+    found = [NO_RANKS] if p.case.numerics.processors or p.case.numerics.balance else []
     found += [NO_SORTING] if p.case.numerics.sort_interval else []
     return [*found, EDGES] if any(not is_endless(p, name) for name in p.scene.meshes) else found
 
