@@ -2,6 +2,7 @@
 """A press: stages to pressures, hold and release, in three engines; its table by routes that do not use it."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.scenes import report, stages
 from epdem.scenes.plan import plan
+from epdem.studies.pages import scene_sentences
 
 SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
 PRESSURES = [10e6, 40e6]
@@ -34,6 +36,8 @@ def press(**scene):
     more |= {"stages": [f"{x} Pa" for x in PRESSURES], "unload_speed": "0.5 m/s"}
     data["output"] |= {"rows": 1500, "particles": 10}
     data["scene"] |= more | scene
+    data["measured"] = {"source": "by hand", "pressures": ["15 MPa", "39 MPa", "1 GPa"]}
+    data["measured"] |= {"relative_densities": [0.6, 0.75, 0.99]}
     return {key: value for key, value in data.items() if value is not None}
 
 
@@ -99,6 +103,25 @@ def test_the_page_has_density_over_pressure_and_heckels_line_through_the_stages(
     assert line.name == f"Heckel, 1/slope = {1 / slope:.3g} Pa"
 
 
+@pytest.mark.liggghts
+def test_measured_densities_stand_beside_those_of_the_first_load(pressed):
+    p, tables = pressed.plan, pressed.results.tables
+    (line,) = stages.against_measured(p, tables)
+    rows, density = tables["rows"]["pressure"].to_numpy(), stages.densities(p, tables)
+    differences = []
+    for pressure, value in ((15e6, 0.6), (39e6, 0.75)):
+        after = int(np.flatnonzero(rows >= pressure)[0])
+        assert density[after - 1] <= density[after] < density[after - 1] + 0.01
+        differences.append(density[after] - value)
+    said = [float(x) for x in re.findall(r"([+-]\d\.\d+) at", line)]
+    assert said == pytest.approx(differences, abs=0.01)
+    assert line.endswith("not reached at 1e+09 Pa (by hand)")
+    (chart,) = report.key(p, tables)
+    points = chart.panels[0].series[-1]
+    assert points.name == "measured" and [*points.y] == [0.6, 0.75, 0.99]
+    assert line[1:] in " ".join(scene_sentences(pressed))
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_round_die_has_the_same_densities_in_every_engine(engine, tmp_path):
     data = without(press(diameter="0.6 mm", count=120, stages=["30 MPa"]), "box", "hold")
@@ -115,6 +138,9 @@ REFUSED = [
     (press(diameter="1 mm"), "a round die has a diameter, and neither box nor periodic"),
     (press(mass="1 mg"), "give one of count and mass"),
     (press(stages=[]), "stages"),
+    (press() | {"measured": {"source": "x", "pressures": ["1 MPa"], "relative_densities": [60]}}, "percent"),
+    (press() | {"measured": {"source": "x", "pressures": ["1 MPa"], "relative_densities": []}}, "one density for each"),
+    (read_toml(CASES / "settle_glass.toml") | {"measured": press()["measured"]}, "take kind press"),
 ]
 
 

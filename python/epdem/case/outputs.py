@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .fields import Frozen, Length, Line, Name, Quantity, Speed
+from .fields import Frozen, Length, Line, Name, Pressure, Quantity, Speed
 from .walls import Axis, PartName, Place, Side
 
 UNITS = {"force": "N", "torque": "N m", "position": "m"}
@@ -102,6 +102,22 @@ class Stages(Frozen):
     opposite: PartName
     sides: list[PartName] = Field(default_factory=list, max_length=8)
     perimeter: Length | None = None
+
+
+class MeasuredDensities(Frozen):
+    """Measured relative densities of a powder under pressure beside those of a press in figure and page; no check uses
+    them."""
+
+    source: Line
+    pressures: Annotated[list[Pressure], Field(min_length=1, max_length=1000)]
+    relative_densities: list[Annotated[float, Quantity("1", above=0.0, le=1.0, hint="percent?")]]
+
+    @model_validator(mode="after")
+    def _pairs(self) -> Self:
+        n, m = len(self.pressures), len(self.relative_densities)
+        if n != m:
+            raise ValueError(f"pressures: {n}, relative_densities: {m}; give one density for each pressure")
+        return self
 
 
 Check = Annotated[FloorLoad | BedRebound | MassFlow | ReboundSpeed | Unloading, Field(discriminator="kind")]

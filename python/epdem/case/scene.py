@@ -25,6 +25,7 @@ from .fields import (
 from .kinds import Keys, parts, read_scene
 from .law import check_law
 from .messages import explain
+from .outputs import MeasuredDensities
 from .parts import Parts
 from .sizes import Share, context
 from .toml import KIND, named, read_toml, with_library
@@ -132,6 +133,7 @@ class SceneCase(Frozen):
     contact: Contact = Contact()
     output: Output = Output()
     numerics: SceneNumerics = SceneNumerics()
+    measured: MeasuredDensities | None = None
 
     @model_validator(mode="after")
     def _names(self) -> Self:

@@ -65,6 +65,8 @@ def refuse_outside(s: Parts, triangles: dict[str, FloatArray]) -> None:
 
 def refuse_combinations(case: SceneCase, s: Parts) -> None:
     """Raise CaseError for parts that exclude each other."""
+    if case.measured and not s.stages:
+        raise CaseError("measured: relative densities under pressure belong to a press; remove it, or take kind press")
     gates = {w.name for w in s.gates}
     for phase in s.phase:
         if phase.until and phase.until.force is not None and phase.until.wall in gates:

@@ -27,6 +27,7 @@ from .run import SceneOutcome
 Tables = dict[str, pd.DataFrame]
 TIME = Axis("time", "s")
 BINS = 30
+MEASURED_POINTS = 5  # kind of marker, as of measured impacts
 COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
@@ -185,6 +186,9 @@ def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
         Series("punch", pressure.to_numpy(), density, 0),
         Series("ends of phases", ends["pressure"].to_numpy(), ends["relative_density"].to_numpy(), INK, None, 0),
     ]
+    if known := p.case.measured:
+        x, y = np.array(known.pressures), np.array(known.relative_densities)
+        series.append(Series("measured", x, y, INK, None, MEASURED_POINTS))
     return [Panel(Axis("pressure", "Pa"), Axis("relative density"), series)]
 
 
@@ -339,6 +343,8 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     show_table(console, make_table(outcome.case.case.title, CHECKED, rows, left=("check", "unit")))
     _show_measures(outcome, console)
     _show_stages(outcome, console)
+    for line in stages.against_measured(outcome.plan, outcome.results.tables):
+        console.print(line, soft_wrap=True)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow")
     p, rows = outcome.plan, outcome.results.tables["rows"]

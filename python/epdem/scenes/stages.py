@@ -94,6 +94,23 @@ def loaded(p: ScenePlan, stages: pd.DataFrame) -> pd.DataFrame:
     return stages[stages["phase"].isin(names)]
 
 
+def against_measured(p: ScenePlan, tables: Tables) -> list[str]:
+    """One line: the relative density of the scene less the measured one where loading first reaches each pressure."""
+    known, declared = p.case.measured, p.scene.stages
+    if known is None or declared is None:
+        return []
+    pressure, density = tables["rows"][declared.pressure].to_numpy(), densities(p, tables)
+    if not (pressure > 0.0).any():
+        return []
+    rising = (pressure > 0.0) & (pressure > np.maximum.accumulate(np.append(-math.inf, pressure[:-1])))
+    there = np.interp(known.pressures, pressure[rising], density[rising], left=math.nan, right=math.nan)
+    found = [
+        f"not reached at {at:.4g} Pa" if math.isnan(ours) else f"{ours - value:+.3f} at {at:.4g} Pa"
+        for at, value, ours in zip(known.pressures, known.relative_densities, there, strict=True)
+    ]
+    return [f"relative density less the measured one: {', '.join(found)} ({known.source})"]
+
+
 def _normal_forces(contacts: pd.DataFrame, stages: Stages) -> pd.Series:
     """Sum of the normal forces on the sides [N] by step."""
     at_sides = contacts[contacts["wall"].isin(stages.sides)]

@@ -34,6 +34,7 @@ from ..scenes.plan import ScenePlan
 from ..scenes.report import bed
 from ..scenes.report import charts as charts_of_scene
 from ..scenes.run import SceneOutcome
+from ..scenes.stages import against_measured as against_measured_densities
 from ..theory.validity import SMALL_DEFORMATION
 from .calibrate import CONFIDENCE, Calibration, experiment
 from .fit import Fit
@@ -305,6 +306,7 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
         f"With w, the share of the weaker body, the contacts reach a strain w a/R* of {radius:.3g} and w delta/R* of "
         f"{overlap:.3g}; small strain ends at w a/R* = {SMALL_DEFORMATION}."
     )
+    said += [line[0].upper() + line[1:] + "." for line in against_measured_densities(p, tables)]
     return [*said, f"These checks fail: {failed}." if failed else f"All {len(checks)} checks hold."]
 
 
