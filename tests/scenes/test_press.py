@@ -133,6 +133,23 @@ def test_a_round_die_has_the_same_densities_in_every_engine(engine, tmp_path):
     assert 0.3 < found["radial_over_axial"]["stage1"] < 1.0
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
+    """A box without friction, powder without weight; the floor moves as far as the punch until the release."""
+    data = press(double_action=True, stages=["40 MPa"], hold="5 us")
+    two = run(write_case(data, tmp_path), engine, out=tmp_path / "two")
+    one = run(write_case(press(stages=["40 MPa"], hold="5 us"), tmp_path / "one"), engine, out=tmp_path / "one/out")
+    found, other = (outcome.results.tables["stages"].set_index("phase") for outcome in (two, one))
+    assert found["relative_density"].to_numpy() == pytest.approx(other["relative_density"].to_numpy(), abs=0.02)
+    assert found["pressure"]["stage1"] == pytest.approx(found["opposite_pressure"]["stage1"], rel=0.1)
+    pressed = two.results.phases.set_index("phase").loc["stage1"]
+    way = 1.5 * (pressed["end_time"] - pressed["begin_time"])  # of each, at half of 3 m/s
+    assert found["height"]["stage1"] == pytest.approx(HEIGHT - 2.0 * way, rel=1e-9)
+    last = two.results.particles[two.results.particles["step"] == pressed["end"]]
+    assert last["z"].min() > way and last["z"].max() < HEIGHT - way
+    assert two.passed
+
+
 REFUSED = [
     (without(press(), "box"), "a die has a diameter or a box"),
     (press(diameter="1 mm"), "a round die has a diameter, and neither box nor periodic"),

@@ -89,7 +89,8 @@ class Unloading(Frozen):
 
 
 class Stages(Frozen):
-    """The table of a press has the end of each phase from the first in which `wall` moves towards the plane `against`.
+    """The table of a press has the end of each phase from the first in which `wall` moves towards `against`, a plane or
+    a plate.
 
     area: of the bed across. pressure, opposite: rows of the pressure on both. sides: walls around the bed, whose length
     around is `perimeter`.

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ..case.outputs import Stages
+from ..case.walls import PlateWall
 from .checks import work_of_walls
 from .columns import FORCE, NORMAL, place
 from .plan import Phase, ScenePlan
@@ -16,20 +17,26 @@ Tables = dict[str, pd.DataFrame]
 
 
 def towards(p: ScenePlan, stages: Stages, phase: Phase) -> float:
-    """Speed [m/s] of the punch towards the plane that it presses against."""
-    axis, at = _plane(p, stages)
+    """Speed [m/s] of the punch towards the wall that it presses against, which may move, too."""
+    axis, at = _against(p, stages, np.zeros(1))
     begin = p.triangles[stages.wall][0, 0, axis]
-    return phase.velocity(stages.wall)[axis] * math.copysign(1.0, at - begin)
+    speed = phase.velocity(stages.wall)[axis] - phase.velocity(stages.against)[axis]
+    return speed * math.copysign(1.0, at[0] - begin)
 
 
-def _plane(p: ScenePlan, stages: Stages) -> tuple[int, float]:
-    return next(("xyz".index(w.axis), w.at) for w in p.scene.planes if w.name == stages.against)
+def _against(p: ScenePlan, stages: Stages, time: np.ndarray) -> tuple[int, np.ndarray]:
+    """Axis of the press and places [m] at times [s] of the wall that the punch presses against."""
+    for w in p.scene.planes:
+        if w.name == stages.against:
+            return "xyz".index(w.axis), np.full(time.shape, w.at)
+    axis = "xyz".index(next(w.axis for w in p.scene.wall if w.name == stages.against and isinstance(w, PlateWall)))
+    return axis, place(p, stages.against, axis, time)
 
 
 def heights(p: ScenePlan, stages: Stages, time: np.ndarray) -> np.ndarray:
-    """Height [m] of the bed between the punch and the plane at times [s]."""
-    axis, at = _plane(p, stages)
-    return np.abs(place(p, stages.wall, axis, time) - at)
+    """Height [m] of the bed between the punch and the wall that it presses against at times [s]."""
+    axis, at = _against(p, stages, time)
+    return np.asarray(np.abs(place(p, stages.wall, axis, time) - at))
 
 
 def volume(p: ScenePlan, tables: Tables) -> float:
@@ -50,7 +57,7 @@ def densities(p: ScenePlan, tables: Tables) -> np.ndarray:
 
 
 def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
-    """One row per phase from the first in which the punch moves towards the plane, SI.
+    """One row per phase from the first in which the punch moves towards the wall against it, SI.
 
     pressure, opposite_pressure: means of the last row of the phase. springback: axial strain since the end of the last
     phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase,
@@ -157,7 +164,7 @@ def _behind(p: ScenePlan, tables: Tables) -> int:
     stages, spheres = tables["stages"], tables["particles"]
     declared = p.scene.stages
     assert declared is not None
-    axis, at = _plane(p, declared)
-    height = spheres["step"].map(stages.set_index("step")["height"])
-    counts = (np.abs(spheres["xyz"[axis]] - at) > height).groupby(spheres["step"]).sum()
+    axis, at = _against(p, declared, p.time_at(stages["step"].to_numpy()))
+    height, begin = (spheres["step"].map(pd.Series(x, stages["step"])) for x in (stages["height"].to_numpy(), at))
+    counts = (np.abs(spheres["xyz"[axis]] - begin) > height).groupby(spheres["step"]).sum()
     return int(counts.max())
