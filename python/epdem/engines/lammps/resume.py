@@ -20,7 +20,7 @@ def resume(p: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed
     """Continue a run from its newest restart file. Raises CaseError, EngineError."""
     step, lost = choose(p, folder, folder / launcher.OUT, tables.damaged)
     script = write_resume(p, folder, step)
-    launcher.run(script.name, folder, ranks=ranks, log="log.resume", append=True, report=pruning(folder, report))
+    launcher.run(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
     return Resumed(step, lost)
 
 
