@@ -194,7 +194,9 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
             results=SimpleNamespace(tables=tables),
             warnings=["[/y]"],
             deck=SimpleNamespace(steps=1, time_step=1e-6),
-            plan=SimpleNamespace(steps=1, time_step=1e-6, scene=SimpleNamespace(measure=[])),
+            plan=SimpleNamespace(
+                steps=1, time_step=1e-6, case=SimpleNamespace(measured=None), scene=SimpleNamespace(stages=None, measure=[])
+            ),
             seconds=1.0,
             reused=False,
             resumed_from=None,
