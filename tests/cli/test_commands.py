@@ -195,7 +195,10 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
             warnings=["[/y]"],
             deck=SimpleNamespace(steps=1, time_step=1e-6),
             plan=SimpleNamespace(
-                steps=1, time_step=1e-6, case=SimpleNamespace(measured=None), scene=SimpleNamespace(stages=None, measure=[])
+                steps=1,
+                time_step=1e-6,
+                case=SimpleNamespace(measured=None),
+                scene=SimpleNamespace(stages=None, measure=[]),
             ),
             seconds=1.0,
             reused=False,
