@@ -2,13 +2,14 @@
 // Finite elements of a sphere (R = 1, Y = 1) that rigid planes without friction press, the symmetry planes of a
 // lattice:
 //   g++ -std=c++17 -O3 -march=native -ffast-math bench/finite_elements.cpp -o finite_elements
-//   ./finite_elements LATTICE E/Y nu n D [speed [back]] > lattice.csv
+//   ./finite_elements LATTICE E/Y nu n D [speed [back [ball]]] > lattice.csv
 // LATTICE: sc, fcc, bcc, hex (simple hexagonal), tet (simple tetragonal, two planes at 1.1 of the distance of the
-// others) or die (simple cubic, four planes stay); n: elements along an edge of the inner cube, D: last relative
-// density, speed of the planes over sqrt(Y/density), 0.02 by default. With `back`, the speed of the release, the planes
-// stop at D, are held there and go back until they are free; a first column is the phase: 0, 1 and 2. One octant,
-// hexahedra with 2 x 2 x 2 points and one pressure p = K ln(V/V0) each (Q1P0), ideally plastic J2 with the Jaumann rate
-// of the deviator, central differences. Masses of the elements are scaled to one critical time step.
+// others), die (simple cubic, four planes stay) or pair (two planes, or two rigid balls of the radius `ball`); n: elements
+// along an edge of the inner cube, D: last relative density, of a pair the last distance of the planes; speed of the
+// planes over sqrt(Y/density), 0.02 by default. With `back`, the speed of the release, the planes stop at D, are held
+// there and go back until they are free; a first column is the phase: 0, 1 and 2. One octant, hexahedra with 2 x 2 x 2
+// points and one pressure p = K ln(V/V0) each (Q1P0), ideally plastic J2 with the Jaumann rate of the deviator, central
+// differences. Masses of the elements are scaled to one critical time step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -60,9 +61,10 @@ Lattice lattice_of(const std::string& name) {
   if (name == "hex") return {{{x, 1, true, 0}, {{0.5, w, 0}, 1, true, 0}, {z, 1, true, 0}}, {8}, 8.0 * w, "force"};
   if (name == "tet")
     return {{{x, 1, true, 0}, {y, 1, true, 0}, {z, 1.1, true, 1}}, {4, 2}, 8.8, "force_first,force_second"};
+  if (name == "pair") return {{{z, 1, true, 0}}, {2}, 1.0, "force"};
   if (name == "die")
     return {{{x, 1, false, 0}, {y, 1, false, 0}, {z, 1, true, 1}}, {4, 2}, 8.0, "force_side,force_top"};
-  std::fprintf(stderr, "lattice %s: must be sc, fcc, bcc, hex, tet or die\n", name.c_str());
+  std::fprintf(stderr, "lattice %s: must be sc, fcc, bcc, hex, tet, die or pair\n", name.c_str());
   std::exit(2);
 }
 
@@ -214,16 +216,17 @@ void evaluate(Batch& batch, const Real (&x)[8][3], const Real (&u)[8][3], const 
 
 int main(int argc, char** argv) {
   if (argc < 6) {
-    std::fprintf(stderr, "finite_elements LATTICE E/Y nu n D [speed [back]]\n");
+    std::fprintf(stderr, "finite_elements LATTICE E/Y nu n D [speed [back [ball]]]\n");
     return 2;
   }
   const std::string name = argv[1];
   const Lattice lattice = lattice_of(name);
   const double E = std::atof(argv[2]), nu = std::atof(argv[3]), density = std::atof(argv[5]);
   const double speed = argc > 6 ? std::atof(argv[6]) : 0.02, back = argc > 7 ? std::atof(argv[7]) : 0.0;
+  const double ball = argc > 8 ? std::atof(argv[8]) : 0.0;
   const Material material{E / (2 * (1 + nu)), E / (3 * (1 - 2 * nu)), E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))};
   const double ratio = 4.0 / 3.0 * std::acos(-1.0) / (lattice.cell * density);
-  const double end = name == "die" ? ratio : std::cbrt(ratio);  // last distance
+  const double end = name == "pair" ? density : name == "die" ? ratio : std::cbrt(ratio);  // last distance
   if (!(E > 0.0 && nu > -1.0 && nu < 0.5 && end < 1.0 && speed > 0.0 && back >= 0.0)) {
     std::fprintf(stderr, "E/Y and the speeds must be above 0, nu in (-1, 0.5), D above that of touching spheres\n");
     return 2;
@@ -303,9 +306,16 @@ int main(int argc, char** argv) {
       }
       for (int sweep = 0; sweep < 3; ++sweep)
         for (const Plane& plane : lattice.planes) {
-          const double depth = dot(plane.normal, mesh.x[i]) - (plane.moves ? plane.ratio * distance : plane.ratio);
-          if (depth <= 0.0) continue;
+          double depth = dot(plane.normal, mesh.x[i]) - (plane.moves ? plane.ratio * distance : plane.ratio);
           Point way = plane.normal;
+          if (ball > 0.0) {  // on the normal of the plane, which touches it
+            const Point to_ball = minus(scaled(plane.normal, distance + ball), mesh.x[i]);
+            const double far = std::sqrt(dot(to_ball, to_ball));
+            depth = ball - far;
+            way = scaled(to_ball, 1.0 / far);
+          }
+          if (depth <= 0.0) continue;
+          const double along = dot(way, plane.normal);
           for (int k = 0; k < 3; ++k)
             if (held[i][k]) way[k] = 0.0;
           const double push = depth / dot(way, way);
@@ -313,7 +323,7 @@ int main(int argc, char** argv) {
             u[i][k] -= push * way[k];
             mesh.x[i][k] -= push * way[k];
           }
-          impulse[plane.group] += mass[i] * push / dt;
+          impulse[plane.group] += mass[i] * push * along / dt;
         }
       v[i] = scaled(u[i], 1.0 / dt);
     }

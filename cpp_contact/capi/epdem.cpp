@@ -30,7 +30,7 @@ bool in_range(double E_star, const double* parameters) {
   for (int k = 0; k < Law::n_parameters; ++k)
     if (!range_of(Law::parameters[k]).holds(parameters[k])) return false;
   const double share = parameters[Law::n_parameters];
-  return positive(E_star) && share >= 0.5 && share <= 1.0 && Law::valid(parameters);
+  return positive(E_star) && share >= 0.0 && share <= 1.0 && Law::valid(parameters);
 }
 
 /// Calls `body(law object)` for the law of that index; only here an index becomes a type.
@@ -100,7 +100,7 @@ EPDEM_EXPORT const char* epdem_message(int status) {
     case EPDEM_OK: return "ok";
     case EPDEM_UNKNOWN_LAW: return "no law of that index";
     case EPDEM_BAD_PARAMETER:
-      return "E_star and every law parameter must be finite, > 0 and in the law's range, the share of strain in [0.5, "
+      return "E_star and every law parameter must be finite, > 0 and in the law's range, the share of curvature in [0, "
              "1]";
     case EPDEM_BAD_INPUT: return "R_star, m_star, speed and time_step must be finite and > 0, gap finite, steps >= 0";
     default: return "unknown status";

@@ -192,7 +192,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
         numbers[c] = four.a, numbers[c + 1] = four.b, numbers[c + 2] = four.c, numbers[c + 3] = four.d;
       };
       for (int c = 0; c < bodies_at; c += 4) read_four(c);
-      if (grows || pass.strain) read_four(bodies_at);
+      if (grows || is_confined<Law> || pass.strain) read_four(bodies_at);
     }
 
     Kinematics<Lanes> c;

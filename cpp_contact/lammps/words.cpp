@@ -51,7 +51,7 @@ Law law_of() {
           [](double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants) {
             ContactConstants<Class> pair;
             std::memcpy(static_cast<void*>(&pair), constants, sizeof pair);
-            pair.law = epdem::law_of<Class>(E_star, parameters, larger_share(bodies));
+            pair.law = Class(E_star, parameters);
             pair.bodies = bodies;
             std::memcpy(static_cast<void*>(constants), &pair, sizeof pair);
           },

@@ -55,7 +55,7 @@ class LawModel : public NormalModel {
     const Observer observer{keep && plastic_work_ ? &energies : nullptr};
     const auto normal = [&](auto&& growth) {
       return normal_contact(
-          pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
+          pair, R_star, s.radi, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
           [&] { return s.meff; }, !keep, observer, growth);
     };
     NormalContact<Law> contact;
@@ -119,7 +119,7 @@ class LawModel : public NormalModel {
         const PairOfTypes& p = m.pairs[i * width_ + j];
         ContactConstants<Law>& pair = table_[i * width_ + j];
         pair.bodies = body_shares(p.i, p.j, p.strain_share);
-        pair.law = law_of<Law>(effective_modulus(p.i, p.j), p.parameters.data(), larger_share(pair.bodies));
+        pair.law = Law(effective_modulus(p.i, p.j), p.parameters.data());
         pair.shear_modulus = effective_shear_modulus(p.i, p.j);
         pair.damping = p.damping_number;
         pair.dashpot = p.viscous_number;

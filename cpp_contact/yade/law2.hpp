@@ -146,7 +146,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
                  " do not go together: " + (Law::condition ? Law::condition : ""));
     epdem::ContactConstants<Law> pair;
     pair.bodies = bodies_of<Law>(phys, contact, epdem::hardening<Law>(values));
-    pair.law = epdem::law_of<Law>(phys.effectiveModulus, values, larger_share(pair.bodies));
+    pair.law = Law(phys.effectiveModulus, values);
     pair.shear_modulus = phys.effectiveShearModulus;
     pair.dashpot = epdem::viscous_number(phys.en);
     pair.damping = epdem::damping_number(phys.es);

@@ -48,12 +48,15 @@ def test_pressure_and_area_fall_by_the_factors_of_the_strain(share):
         assert (law.radius(alpha) / plain.radius(alpha)) ** 2 == pytest.approx(area, abs=3e-5)
 
 
-def test_the_area_keeps_three_tenths_at_any_overlap():
-    """1 - w^2 h/(2 R*) = 0.3 at h = 1.4 R*/w^2, beyond the radius of any body."""
+def test_the_area_stops_where_the_force_would_fall():
+    """1 - w^2 h/(2 R*) = 1/1.65 at h = 0.788 R*/w^2: then h^0.65 (1 - w^2 h/(2 R*)) is largest."""
     law, plain = Cavity(**PAIR, **SOFT, share=0.5), Cavity(**PAIR, Y=1e8)
-    for overlap, area in ((5.5, 1 - 5.5 / 8), (5.7, 0.3), (50.0, 0.3)):
+    for overlap, area in ((3.1, 1 - 3.1 / 8), (3.2, 0.60606), (50.0, 0.60606)):
         alpha = overlap * 0.01
         assert (law.radius(alpha) / plain.radius(alpha)) ** 2 == pytest.approx(area, abs=1e-5)
+    for share in (0.1, 0.5, 1.0):
+        force = Cavity(**PAIR, **SOFT, share=share).force(np.geomspace(1e-7, 0.1, 4000))
+        assert (np.diff(force) > 0.0).all()
 
 
 def test_the_force_is_continuous_at_first_yield():
@@ -142,18 +145,18 @@ def by_hand(*, E_star, R_star, m_star, speed, Y, share, c=0.82):
     F, a = np.pi * a**2 * k * p_m * f / f[0], a * np.sqrt(np.maximum(k, 0.3))
     W = 8 / 15 * E_star * math.sqrt(R_star) * h[0] ** 2.5 + cumulative_trapezoid(F, h, initial=0)
     back = (0.3 * (1 - tau) ** 2 + 9 / 16 * tau * (1 - tau) + 8 / (3 * np.pi**2) * tau**2) * F**2 / (a * E_star)
-    energy, upward = 0.5 * m_star * speed**2, slice(0, np.argmax(k < 0.4))
+    energy, upward = 0.5 * m_star * speed**2, k > 0.61
     return math.sqrt(np.interp(energy, W[upward], back[upward]) / energy), np.interp(energy, W[upward], a[upward])
 
 
 def test_hutchings_impact_of_a_hard_sphere_on_mild_steel():
-    """70 m/s, dynamic pressure 3 GPa, measured e_n 0.40 (Hutchings 1979): 0.462 without, 0.367 with finite strain."""
+    """70 m/s, dynamic pressure 3 GPa, measured e_n 0.40 (Hutchings 1979): 0.462 with and without finite strain."""
     mass = float(pair.sphere_mass(radius=0.0047, density=7850.0))
     numbers = {"E_star": float(pair.E_star(208e9, 0.3, 208e9, 0.3)), "R_star": 0.0047, "Y": 3e9 / 2.8}
-    for c, expected in ((1e6, 0.462), (0.82, 0.367)):
-        law = Cavity(**numbers, c_strain=c)
-        assert restitution.e_n(law, m_star=mass, speed=70.0) == pytest.approx(expected, abs=5e-4)
-    assert by_hand(**numbers, m_star=mass, speed=70.0, share=1.0)[0] == pytest.approx(0.367, abs=5e-4)
+    for c in (1e6, 0.82):
+        law = Cavity(**numbers, c_strain=c, share=0.0)
+        assert restitution.e_n(law, m_star=mass, speed=70.0) == pytest.approx(0.462, abs=5e-4)
+    assert by_hand(**numbers, m_star=mass, speed=70.0, share=0.0)[0] == pytest.approx(0.462, abs=5e-4)
 
 
 # strain, deviations [%] of e_n from finite elements with small and with finite strain, E/Y = 120 and 300
@@ -187,24 +190,24 @@ def test_an_impact_with_finite_strain_is_that_of_a_sum(share):
 
 RATE = {"sensitivity": 0.012}
 # device, HV, Y [Pa] by the constraint of test_calibrate.py, what, measured;
-# deviation [%] plain, with finite strain, with rate, with both
+# deviation [%] without and with rate
 LEEB = [
-    ("D", 300, 1.13321e9, "width", 0.54e-3, (9.4, 10.5, 5.2, 6.2)),
-    ("D", 600, 2.33525e9, "width", 0.452e-3, (9.9, 10.6, 6.1, 6.7)),
-    ("D", 955, 4.33054e9, "e_n", 0.890, (-1.0, -2.7, 2.7, 1.2)),
-    ("C", 800, 3.41320e9, "width", 0.290e-3, (12.7, 12.9, 9.5, 9.6)),
-    ("G", 300, 1.13321e9, "width", 1.03e-3, (10.2, 11.6, 6.0, 7.4)),
-    ("G", 600, 2.33525e9, "width", 0.90e-3, (5.8, 6.8, 2.1, 2.9)),
-    ("G", 675, 2.72504e9, "e_n", 0.750, (0.5, -5.0, 5.1, -0.2)),
+    ("D", 300, 1.13321e9, "width", 0.54e-3, (9.4, 5.2)),
+    ("D", 600, 2.33525e9, "width", 0.452e-3, (9.9, 6.1)),
+    ("D", 955, 4.33054e9, "e_n", 0.890, (-1.0, 2.7)),
+    ("C", 800, 3.41320e9, "width", 0.290e-3, (12.7, 9.5)),
+    ("G", 300, 1.13321e9, "width", 1.03e-3, (10.2, 6.0)),
+    ("G", 600, 2.33525e9, "width", 0.90e-3, (5.8, 2.1)),
+    ("G", 675, 2.72504e9, "e_n", 0.750, (0.5, 5.1)),
 ]
 
 
 @pytest.mark.parametrize(("device", "hardness", "Y", "quantity", "measured", "expected"), LEEB)
 def test_what_both_options_do_to_leebs_numbers(device, hardness, Y, quantity, measured, expected):
-    """The rate narrows dents and raises e_n above the measured values; finite strain does the opposite."""
+    """The rate narrows dents and raises e_n above the measured values; finite strain changes no dent of a plane."""
     steel = {"steel": read_toml(CASES / f"leeb_{device}.toml")["materials"]["steel"]}
     steel["steel"] |= {"yield_stress": f"{Y!r} Pa"}
-    for number, (strain, rate) in zip(expected, ((0, 0), (1, 0), (0, 1), (1, 1)), strict=True):
+    for number, strain, rate in ((expected[rate], strain, rate) for strain in (0, 1) for rate in (0, 1)):
         tables = {"materials": steel, "law": {"finite_strain": bool(strain)}} | ({"rate": RATE} if rate else {})
         x = experiment(changed(f"leeb_{device}.toml", **tables))
         p = predict(x)

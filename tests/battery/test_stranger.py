@@ -36,7 +36,7 @@ int main() {
 INTERFACE = """#include <epdem.h>
 #include <stdio.h>
 int main(void) {
-  const double p_y[] = {2.8e9, 1.0 /* share of the strain */}, R_star = 0.01, before = 0, delta = 5e-5;
+  const double p_y[] = {2.8e9, 1.0 /* share of the curvature */}, R_star = 0.01, before = 0, delta = 5e-5;
   epdem_step_result out;
   if (epdem_abi() != EPDEM_ABI || epdem_step(1, 1.1e11, p_y, 1, &R_star, &before, &delta, &out)) return 1;
   printf("%.17g", out.force);

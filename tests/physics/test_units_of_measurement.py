@@ -130,6 +130,7 @@ ROWS = [
     Row(pair.R_star, {"R1": (0.01, M), "R2": (0.03, M)}, M),
     Row(pair.m_star, {"m1": (0.01, KG), "m2": (0.03, KG)}, KG),
     Row(pair.strain_share, {"strength1": (1.0e9, PA), "strength2": (1.3e9, PA)}, ONE),
+    Row(pair.curvature_share, {"share1": (0.8, ONE), "R_star": (0.01, M), "R1": (0.02, M)}, ONE),
     Row(pair.sphere_mass, {"radius": (0.01, M), "density": (7850.0, DENSITY)}, KG),
     Row(pressure.hertz, {"r": (6e-5, M), "p_0": P, "a": A}, PA),
     Row(pressure.hertz_peak, CONTACT | {"a": A}, PA),

@@ -116,7 +116,7 @@ def test_the_radius_is_that_of_a_punch_with_the_stiffness_of_the_law_in_theory(b
     spec, E_star = pair_law(load(path), "glass", "glass")
     loaded = contacts[(contacts["force"] > 0) & (contacts["overlap"] < 0.999 * contacts["delta_max"])]
     for _, c in loaded.iterrows():
-        law, step = spec.theory(E_star=E_star, R_star=0.5e-3 if c["j"] else 1e-3), 1e-5 * c["overlap"]
+        law, step = spec.theory(E_star=E_star, R_star=0.5e-3 if c["j"] else 1e-3, radius=1e-3), 1e-5 * c["overlap"]
         ends = [float(law.unloading_force(c["overlap"] + way, c["delta_max"])) for way in (-step, step)]
         assert c["contact_radius"] == pytest.approx((ends[1] - ends[0]) / (4 * E_star * step), rel=1e-3)
     assert len(loaded) > 10

@@ -32,11 +32,11 @@ def test_a_hundred_thousand_radii_take_less_than_a_second_and_each_row_is_that_o
     p, R_star, overlap, largest = bed(name)
     one = np.ones(N, int)
     begin = time.process_time()
-    table = columns.energies(p, one, one, R_star, overlap, largest, np.ones(N, bool), np.ones(N))
+    table = columns.energies(p, one, one, R_star, 2 * R_star, overlap, largest, np.ones(N, bool), np.ones(N))
     assert time.process_time() - begin < 1.0
     spec, E_star = pair_law(p.case, p.model.types[0].material, p.model.types[0].material)
     for k in range(0, N, N // 50):
-        law = spec.theory(E_star=E_star, R_star=float(R_star[k]))
+        law = spec.theory(E_star=E_star, R_star=float(R_star[k]), radius=float(2 * R_star[k]))
         if spec.adheres:
             top = np.maximum(law.radius(largest[k]), law.touch_radius)
             branch, dent = law.branch(top)

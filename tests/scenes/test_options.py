@@ -68,7 +68,7 @@ def test_the_walls_keep_their_material_whatever_the_order_of_types():
     d = deck(plan(parse(bed())))
     strength = next(p for p in d.contact.properties if p.name == "yieldPressure")
     types = d.plan.types
-    assert types == ("plate", "shot") and {types[wall.type - 1] for wall in (*d.planes, *d.meshes)} == {"plate"}
+    assert types == ("plate", "shot") and {types[wall.type - 1] for wall in (*d.primitives, *d.meshes)} == {"plate"}
     assert strength.values[0] < strength.values[1]
 
 

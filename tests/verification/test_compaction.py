@@ -4,7 +4,19 @@
 import numpy as np
 import pytest
 
-from dense_lattices import DEVIATIONS, LATTICES, MATERIALS, RELEASES, STEPS, deviation, finite_elements, pressed
+from dense_lattices import (
+    DEVIATIONS,
+    LATTICES,
+    MATERIALS,
+    RELEASES,
+    STEPS,
+    deviation,
+    finite_elements,
+    pressed,
+    smooth,
+    table,
+)
+from epdem.theory import pair
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
 from epdem.verification.theory import elastic_sphere
 from epdem.verification.theory.bed import PLANE, Bed, Material
@@ -82,3 +94,24 @@ def test_recovery_against_the_elastic_sphere(name, density):
     for share in (0.75, 0.5):
         series = elastic_sphere.recovery(elastic_sphere.DIRECTIONS[name], share, **peak, E=120.0, nu=0.34)
         assert series == pytest.approx(row[-1][share], rel=0.06)
+
+
+# ball over the radius of the sphere: deviation [%] of the force at OVERLAPS of one side; last by the strain w a/R*
+OVERLAPS = np.array([0.02, 0.04, 0.08, 0.12, 0.16, 0.20, 0.25])
+UNLIKE = {
+    np.inf: ((3, 1, -8, -6, 3, 10, 16), (3, 1, -8, -6, 3, 10, 16)),
+    4.0: ((7, -1, -10, -11, -7, -1, 6), (3, -7, -17, -20, -17, -13, -9)),
+    1.0: ((8, -4, -10, -10, -9, -6, -2), (-5, -20, -31, -35, -37, -39, -40)),
+    0.5: ((4, -3, -4, 1, 7, 14, 21), (-14, -28, -37, -41, -43, -45, -49)),
+}
+
+
+@pytest.mark.parametrize("ball", UNLIKE)
+def test_a_soft_sphere_between_hard_ones_of_any_size_against_finite_elements(ball):
+    """The pressure falls with the radius of contact over that of the body that yields, not with the strain w a/R*."""
+    d, F = table("pair_plane" if ball == np.inf else f"pair_{ball:g}")
+    E, nu, R_star = MATERIALS[""].E, MATERIALS[""].nu, float(pair.R_star(1.0, ball))
+    reference = smooth(d, F[:, 0], 1.0 - OVERLAPS)
+    for share, expected in zip((pair.curvature_share(1.0, R_star=R_star, R1=1.0), 1.0), UNLIKE[ball], strict=True):
+        law = Cavity(E_star=E / (1 - nu**2), R_star=R_star, Y=1.0, c_strain=FINITE_STRAIN, share=share)
+        assert np.abs(100 * (law.force(OVERLAPS) / reference - 1) - expected).max() < 1.0

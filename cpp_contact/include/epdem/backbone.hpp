@@ -92,14 +92,18 @@ double hardening(const double* parameter) noexcept {
   return 1.75;
 }
 
-/// The law of a pair of bodies; share: larger_share of both, which laws of finite strain take.
+/// Whether a law knows finite strain, which depends on the curvature_share of a contact.
+template <class Law, class = void>
+inline constexpr bool is_confined = false;
+template <class Law>
+inline constexpr bool is_confined<Law, std::void_t<decltype(&Law::confine)>> = true;
+
+/// The law of a contact of this curvature_share, 1/2 for bodies of equal strength.
 template <class Law>
 Law law_of(Number<Law> E_star, const Number<Law>* parameters, Number<Law> share) noexcept {
-  (void)share;
-  if constexpr (std::is_constructible_v<Law, Number<Law>, const Number<Law>*, Number<Law>>)
-    return Law(E_star, parameters, share);
-  else
-    return Law(E_star, parameters);
+  Law law(E_star, parameters);
+  if constexpr (is_confined<Law>) law.confine(share);
+  return law;
 }
 
 /// What a step of a law returns.

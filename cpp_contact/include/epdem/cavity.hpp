@@ -8,14 +8,17 @@ namespace epdem {
 
 // Of Cavity's finite_strain: so large a number changes nothing; below the other the pressure loses its digits.
 inline constexpr double no_finite_strain = 1e6, least_finite_strain = 1e-3;
+/// Smallest area over that of small strain: from here on alpha k alpha^-0.35, F at large strain, would fall.
+inline constexpr double least_area = 1.0 / 1.65;
 
 /// Three phases: elastic to p_0 = c_Y Y (eq. 8.78), expanding cavity (slope 2/3 of p_m/Y against ln a, eq. 8.81),
 /// fully plastic with p_m = c_P Y (eq. 8.80) and a^2 = 2 R* alpha (eq. 8.85). This project's own composition:
 ///   s = alpha/alpha_Y;  1 < s < s_P:  a = a_Y s^((1+beta)/2),  p_m = Y [2 c_Y/3 + (1+beta)/3 ln s],
 ///   tau = ln s/ln s_P. Nothing is fitted.
-/// Option finite_strain: p_m times f(s)/f(s_Y), s = w a/R*, f(s) = 1 - exp(-c s^-0.7), c = 0.82 (Jackson and Green
-/// 2005, J. Tribol. 127, 343), w: larger_share of both bodies; and on the area that a plane cuts from a sphere: a^2
-/// times k = 1 - w^2 (alpha - alpha_Y)/(2 R*). The division keeps the force continuous at first yield.
+/// Option finite_strain: p_m times f(s)/f(s_Y), s = l a/R*, f(s) = 1 - exp(-c s^-0.7), c = 0.82 (Jackson and Green
+/// 2005, J. Tribol. 127, 343), l: curvature_share of what yields; and on the area that a plane cuts from a sphere: a^2
+/// times k = 1 - l^2 (alpha - alpha_Y)/(2 R*). The division keeps the force continuous at first yield; k >= 1/1.65
+/// keeps it from falling.
 template <class T>
 struct Cavity {
   using number = T;
@@ -38,12 +41,12 @@ struct Cavity {
   static constexpr bool strength_by_ratio = false;
 
   T E_star{}, Y{}, c_Y{}, c_P{};
-  T c_yield{};        // c (w a_Y/R*)^-0.7 of finite strain; infinite without
+  T c_yield{};        // c (l a_Y/R*)^-0.7 of finite strain; infinite without
   T plastic_ratio{};  // alpha_P/R*
   T log_s_P{}, beta{};
   T a_ratio{};       // a_Y/R*, the root of alpha_Y/R*
-  T yield_factor{};  // f(w a_Y/R*) of finite strain
-  T cut{};           // w^2/2 of finite strain; 0 without
+  T yield_factor{};  // f(l a_Y/R*) of finite strain
+  T cut{};           // l^2/2 of finite strain; 0 without
 
   static double hardening(const double* parameter) noexcept { return parameter[2] / parameter[1]; }
 
@@ -55,7 +58,8 @@ struct Cavity {
   }
 
   Cavity() = default;
-  Cavity(T E_star_, const T* parameter, T share) noexcept
+  /// Between bodies of equal strength, l = 1/2.
+  Cavity(T E_star_, const T* parameter) noexcept
       : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     log_s_P = log_plastic(c_Y, c_P);
@@ -63,8 +67,16 @@ struct Cavity {
     beta = log(T(2.0)) / log_s_P;
     const bool finite = parameter[3] < no_finite_strain;
     c_yield =
-        finite ? parameter[3] * exponential<T>(-0.7 * logarithm(share * a_ratio)) : std::numeric_limits<T>::infinity();
-    cut = finite ? 0.5 * share * share : T{};
+        finite ? parameter[3] * exponential<T>(-0.7 * logarithm(0.5 * a_ratio)) : std::numeric_limits<T>::infinity();
+    cut = finite ? T(0.125) : T{};
+    yield_factor = 1.0 - fallen(T{});
+  }
+
+  /// Gives the law of l = 1/2 another curvature_share.
+  void confine(T share) noexcept {
+    const T twice = max(constant<T>(1e-6), 2.0 * share);
+    c_yield = c_yield * exponential<T>(-0.7 * logarithm(twice));
+    cut = cut * (twice * twice);
     yield_factor = 1.0 - fallen(T{});
   }
 
@@ -93,9 +105,9 @@ struct Cavity {
     return p;
   }
 
-  /// Area that a plane cuts from a sphere over the area of small strain, k; not below 0.3, far beyond all bodies.
+  /// Area that a plane cuts from a sphere over the area of small strain, k.
   T area_left(T R_star, T delta) const noexcept {
-    return max(constant<T>(0.3), 1.0 - cut * max(T{}, delta / R_star - yield_ratio()));
+    return max(constant<T>(least_area), 1.0 - cut * max(T{}, delta / R_star - yield_ratio()));
   }
 
   /// 1 - f(s) of finite strain, from ln a/a_Y.

@@ -35,6 +35,16 @@ inline ContactConstants<Law> of_law(const Law& law) noexcept {
   return pair;
 }
 
+/// The law of a contact with the radius of body i.
+template <class Law, class T = Number<Law>>
+EPDEM_INLINE Law law_at(const ContactConstants<Law>& pair, T R_star, T radius_i) noexcept {
+  Law law = pair.law;
+  if constexpr (is_confined<Law>)
+    if (rarely(any(law.softens()) && any(pair.bodies.strain_i != 0.5)))
+      law.confine(curvature_share(pair.bodies, R_star, radius_i));
+  return law;
+}
+
 /// Observer that records nothing.
 struct NoObserver {
   template <class... Any>
@@ -82,13 +92,13 @@ struct NormalContact {
 /// that is evaluated once more, with closing = 0. growth: a Growing with compaction. The observer gets the step, its
 /// overlap and a function that returns the energies of the step.
 template <class Law, class Mass, class Observer = NoObserver, class Growth = NoGrowth>
-inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Number<Law> R_star,
+inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Number<Law> R_star, Number<Law> radius_i,
                                          const State<Law>& before, Number<Law> overlap, Number<Law> closing,
                                          Number<Law> approach_speed, bool damped, bool viscous, Mass m_star,
                                          bool repeats = false, Observer&& observer = {},
                                          Growth&& growth = {}) noexcept {
   using T = Number<Law>;
-  const Law& law = pair.law;
+  const Law law = law_at(pair, R_star, radius_i);
   NormalContact<Law> now{};
   now.overlap = overlap;
   [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth
@@ -227,7 +237,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   [[maybe_unused]] const auto attached = detail::attached<Law>(history.law);
   if constexpr (adheres<Law>) detail::keep_where<T>(attached, history.friction);
   NormalContact<Law> now =
-      normal_contact(pair, c.R_star, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
+      normal_contact(pair, c.R_star, c.radius_i, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
                      settings.damped, settings.viscous, m_star, settings.repeats, observer, history.growth);
   history.law = now.step.after;
 

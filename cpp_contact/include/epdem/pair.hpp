@@ -50,7 +50,7 @@ inline double strain_share(double strength_i, double strength_j, double hardenin
 /// What a contact knows of its two bodies apart.
 template <class T>
 struct BodyShares {
-  T strain_i{};          // strain_share of i
+  T strain_i = T{} + 0.5;  // strain_share of i
   T compliance_i{};      // of i in the elastic compliance: E* (1-nu_i^2)/E_i; j has the rest
   T bulk_i{}, bulk_j{};  // compliance share times (1-2 nu)/(2 pi (1-nu^2))
 };
@@ -67,6 +67,13 @@ inline BodyShares<double> body_shares(Elastic i, Elastic j, double strain_share_
 /// The same when the bodies change places.
 inline BodyShares<double> mirrored(const BodyShares<double>& b) noexcept {
   return {1.0 - b.strain_i, 1.0 - b.compliance_i, b.bulk_j, b.bulk_i};
+}
+
+/// Curvature of the bodies, each by its share of the strain, over that of the contact: R* (w_i/R_i + w_j/R_j), 1/2
+/// between bodies of equal strength, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane.
+template <class T>
+EPDEM_INLINE T curvature_share(const BodyShares<T>& bodies, T R_star, T radius_i) noexcept {
+  return 1.0 - bodies.strain_i + (2.0 * bodies.strain_i - 1.0) * (R_star / radius_i);
 }
 
 /// Share of the body that takes more of the strain: 1/2 to 1.

@@ -56,10 +56,10 @@ def _column(p: ScenePlan, word: str) -> str | None:
     return ROWS.get(word)
 
 
-def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] | None = None) -> pd.DataFrame:
+def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.DataFrame:
     """The thermo rows: one per step. Raises EngineError.
 
-    on_spheres: walls whose forces in the log act on the spheres; None: LIGGGHTS's planes.
+    on_spheres: walls whose forces in the log act on the spheres.
 
     A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
     that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run has.
@@ -74,7 +74,6 @@ def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] | None = Non
         known = {step: row for step, row in table.items() if step <= steps[0]}
         table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
     found = columns.rows(p, table, [*words.values()])
-    on_spheres = {w.name for w in p.scene.planes} & {*p.measured_walls} if on_spheres is None else on_spheres
     opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
     found[opposite] = -found[opposite]
     return found

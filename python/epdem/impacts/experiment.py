@@ -137,15 +137,16 @@ class Experiment:
 
     def theory(self) -> theory_law.Law:
         """The law in the theory."""
-        return self.law.theory(E_star=self.E_star, R_star=self.R_star)
+        return self.law.theory(E_star=self.E_star, R_star=self.R_star, radius=self.body.radius)
 
     def backbone(self) -> Backbone:
         """The law in the theory, of impacts without adhesion. Raises KeyError for others."""
-        return self.law.backbone(E_star=self.E_star, R_star=self.R_star)
+        return self.law.backbone(E_star=self.E_star, R_star=self.R_star, radius=self.body.radius)
 
     def native_law(self) -> Law:
         """The same law in C++."""
-        return Law(self.law.name, E_star=self.E_star, share=self.law.share, **self.law.parameters)
+        share = float(self.law.curvature_share(self.R_star, self.body.radius))
+        return Law(self.law.name, E_star=self.E_star, share=share, **self.law.parameters)
 
     @property
     def viscous_number(self) -> float:
@@ -183,7 +184,7 @@ def apply_rate(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float
     factor, found = 1.0, spec
     for _ in range(20):  # the factor hardly changes the radius: three digits a turn
         found = spec.of(*(factor * s for s in spec.strengths))
-        theory, work = found.theory(E_star=E_star, R_star=R_star), 0.5 * m_star * speed**2
+        theory, work = found.theory(E_star=E_star, R_star=R_star, radius=body.radius), 0.5 * m_star * speed**2
         a = float(theory.radius_of_work(work))
         factor = 1.0 + rate.sensitivity * math.log(
             max(float(strain_rate(speed, a, share=found.share)) / rate.reference, 1.0)

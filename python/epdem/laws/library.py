@@ -125,7 +125,8 @@ def cases(*, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
 class Law:
     """One law with its constants: E_star [Pa] and the law's parameters by name, SI.
 
-    share: the larger share of both bodies in the strain, from 1/2 (bodies of equal strength) to 1 (one never yields).
+    share: the curvature of what yields over the curvature of the contact (`pair.curvature_share`), which finite strain
+    takes.
     Raises CaseError for an unknown law or parameter, or values outside the law's range.
     """
 

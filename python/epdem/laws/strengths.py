@@ -12,8 +12,8 @@ from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from ..theory.indentation import PYRAMID, Indentation, mean_pressure
 from ..theory.indentation import yield_stress as yield_stress_of
 from ..theory.law import Law
-from ..theory.numerics import Real, bisect
-from ..theory.pair import HARDENING, E_star, strain_share
+from ..theory.numerics import Array, Real, bisect
+from ..theory.pair import HARDENING, E_star, curvature_share, strain_share
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
 LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
@@ -74,18 +74,19 @@ class LawSpec:
     strengths: tuple[float, float]
     common: bool = False
 
-    def theory(self, *, E_star: float, R_star: Real) -> Law:
-        """The law in the theory for one R_star [m] or many, shape (n,).
+    def theory(self, *, E_star: float, R_star: Real, radius: Real) -> Law:
+        """The law in the theory for one R_star and radius of the first body [m] or many, shape (n,).
 
         Raises ValueError for parameters that make no sense together.
         """
-        make = self.adhesive if self.adheres else self.backbone
-        return make(E_star=E_star, R_star=R_star)
+        if self.adheres:
+            return self.adhesive(E_star=E_star, R_star=R_star)
+        return self.backbone(E_star=E_star, R_star=R_star, radius=radius)
 
-    def backbone(self, *, E_star: float, R_star: Real) -> Backbone:
+    def backbone(self, *, E_star: float, R_star: Real, radius: Real) -> Backbone:
         """`theory` of a law without adhesion. Raises KeyError for another one."""
         law = LAWS[self.name]
-        share = {"share": self.share} if law.uses_share else {}
+        share = {"share": self.curvature_share(R_star, radius)} if law.uses_share else {}
         return law(E_star=E_star, R_star=R_star, **self._numbers, **share)
 
     def adhesive(self, *, E_star: float, R_star: Real) -> JKR:
@@ -106,10 +107,17 @@ class LawSpec:
     @property
     def share(self) -> float:
         """Share of the weaker body in the strain: 1/2 of bodies of equal strength, 1 if the other one never yields."""
+        return max(self._first_share, 1.0 - self._first_share)
+
+    def curvature_share(self, R_star: Real, radius: Real) -> Array:
+        """`pair.curvature_share` of contacts of these R_star and radii of the first body [m]."""
+        return curvature_share(self._first_share, R_star=R_star, R1=radius)
+
+    @property
+    def _first_share(self) -> float:
         plastic, first = (self.parameters.get(name, 0.0) for name in ("plastic_ratio", "first_yield_ratio"))
         hardening = plastic / first if plastic > first else HARDENING  # the law refuses others
-        one = float(strain_share(*self.strengths, hardening=hardening))
-        return max(one, 1.0 - one)
+        return float(strain_share(*self.strengths, hardening=hardening))
 
     @property
     def adheres(self) -> bool:
@@ -258,4 +266,8 @@ def yield_ratio_of(law: LawNumbers, strength: float, solid: Solid) -> float:
 def _alone(law: LawNumbers, strength: float, modulus: float) -> Backbone:
     """The law without adhesion at R* = 1, of two bodies of this strength [Pa] and E* = `modulus` [Pa]."""
     dry = find_law(law.name).without_adhesion or law.name  # attraction plays no part in the strength
-    return replace(law, name=dry, absolute=strength).pair(strength, strength).backbone(E_star=modulus, R_star=1.0)
+    return (
+        replace(law, name=dry, absolute=strength)
+        .pair(strength, strength)
+        .backbone(E_star=modulus, R_star=1.0, radius=2.0)
+    )

@@ -12,9 +12,9 @@ import numpy.typing as npt
 import pandas as pd
 
 from ..base.tables import Quantity
-from ..case.scene import SceneCase
 from ..errors import EngineError
 from ..laws.library import Law
+from ..laws.strengths import LawSpec
 from ..theory.adhesion import plastic_work
 from ..theory.backbones import JKR
 from ..theory.numerics import gauss
@@ -237,7 +237,7 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         apart[:, :2] -= sides * np.round(apart[:, :2] / sides)
     at_walls = raw[NORMAL].to_numpy(float) if NORMAL[0] in raw else np.zeros((len(raw), 3))
     raw = raw.assign(**dict(zip(NORMAL, np.where(between, _unit(apart), at_walls).T, strict=True)))
-    law = energies(p, type_i, type_j, R_star, overlap, largest, attached, screening)
+    law = energies(p, type_i, type_j, R_star, radius_i, overlap, largest, attached, screening)
     table = raw[contact_columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
@@ -254,6 +254,7 @@ def energies(
     type_i: Array,
     type_j: Array,
     R_star: Array,
+    radius_i: Array,
     overlap: Array,
     delta_max: Array,
     attached: npt.NDArray[np.bool_],
@@ -262,38 +263,38 @@ def energies(
     """The columns BY_LAW of contacts; arrays of shape (n,)."""
     out = pd.DataFrame(0.0, index=range(len(overlap)), columns=BY_LAW)
     material = ["", *(t.material for t in p.model.types)]
-    low, high = np.minimum(type_i, type_j), np.maximum(type_i, type_j)
-    keys = pd.DataFrame({"a": low, "b": high})
-    for (a, b), rows in keys.groupby(["a", "b"]).groups.items():
-        at = rows.to_numpy()
-        of_contacts = (x[at] for x in (R_star, overlap, delta_max, attached, screening))
-        values = _one_kind(p.case, material[a], material[b], *of_contacts)
-        for name, value in values.items():
-            out.loc[at, name] = value
+    for (a, b), of_types in pd.DataFrame({"a": type_i, "b": type_j}).groupby(["a", "b"]).indices.items():
+        spec, E_star = pair_law(p.case, material[a], material[b])
+        shares = np.round(spec.curvature_share(R_star[of_types], radius_i[of_types]), 12)  # a law for each size
+        for share in np.unique(shares):
+            at = of_types[shares == share]
+            of_contacts = (x[at] for x in (R_star, radius_i, overlap, delta_max, attached, screening))
+            for name, value in _one_law(spec, E_star, share, *of_contacts).items():
+                out.loc[at, name] = value
     return out
 
 
-def _one_kind(
-    case: SceneCase,
-    a: str,
-    b: str,
+def _one_law(
+    spec: LawSpec,
+    E_star: float,
+    share: float,
     R: np.ndarray,
+    radius: np.ndarray,
     overlap: np.ndarray,
     largest: np.ndarray,
     attached: np.ndarray,
     screening: np.ndarray,
 ) -> dict[str, np.ndarray]:
-    """Contacts of one pair of materials; R* [m] and the other arrays have the shape (n,).
+    """Contacts of one curvature_share; R*, the radius of i [m] and the other arrays have the shape (n,).
 
     A screened contact gives back G = 1 - (1 - gamma) (1 - alpha_Y/b) of the overlap that it would give back alone from
     its largest overlap b: the force is that of the contact alone at b - (b - overlap)/G.
     """
-    spec, E_star = pair_law(case, a, b)
     if spec.adheres:
         adhesive = spec.adhesive(E_star=E_star, R_star=R)
         return _with_adhesion(adhesive, overlap, np.maximum(largest, overlap), attached)
-    theory = spec.backbone(E_star=E_star, R_star=R)
-    law = Law(spec.name, E_star=E_star, share=spec.share, **spec.parameters)
+    theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
+    law = Law(spec.name, E_star=E_star, share=share, **spec.parameters)
     largest = np.maximum(largest, overlap)
     given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
     overlap = largest - (largest - overlap) / given_back

@@ -207,7 +207,7 @@ def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     speeds = np.zeros(len(types))
     for (a, b), at in types.groupby(["a", "b"]).indices.items():
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
-        law = spec.backbone(E_star=E_star, R_star=R_star[at])
+        law = spec.backbone(E_star=E_star, R_star=R_star[at], radius=first["radius"].to_numpy()[at])
         work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
         speeds[at] = np.sqrt(2.0 * work / m_star[at])
     return speeds

@@ -12,16 +12,16 @@ from .numerics import Array, Real, gauss, number
 
 FINITE_STRAIN = 0.82  # c of f(s) = 1 - exp(-c s^-0.7) (Jackson and Green 2005)
 STRAIN_EXPONENT = 0.7
-LEAST_AREA = 0.3  # of the area of small strain
+LEAST_AREA = 1 / 1.65  # of the area of small strain; below it alpha k alpha^-0.35, F at large strain, would fall
 
 
 class Cavity(Backbone):
     """s = alpha/alpha_Y; 1 < s < s_P: a = a_Y s^((1+beta)/2), p_m = Y [2 c_Y/3 + (1+beta)/3 ln s], tau = ln s/ln s_P.
 
     Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default. Finite strain with a of small strain:
-    p_m times f(w a/R*)/f(w a_Y/R*), f(x) = 1 - exp(-c x^-0.7), and the area that a plane cuts, a^2 times k = max(0.3,
-    1 - w^2 (alpha - alpha_Y)/(2 R*)). c_strain = c, by default so large that nothing changes; share = w, 1/2 to 1, that
-    of the weaker body (`pair.strain_share`). ValueError where the law would create energy at yield:
+    p_m times f(l a/R*)/f(l a_Y/R*), f(x) = 1 - exp(-c x^-0.7), and the area that a plane cuts, a^2 times k =
+    max(1/1.65, 1 - l^2 (alpha - alpha_Y)/(2 R*)). c_strain = c, by default so large that nothing changes; share = l,
+    0 to 1, the curvature of what yields (`pair.curvature_share`). ValueError where the law would create energy at yield:
     2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
     """
 
@@ -43,7 +43,7 @@ class Cavity(Backbone):
         super().__init__(E_star, R_star)
         (none,) = self.read_parameters(c_strain=None)  # so large a number that nothing changes
         self.Y, self.c_Y, self.c_P, self.c_strain = self.read_parameters(Y=Y, c_Y=c_Y, c_P=c_P, c_strain=c_strain)
-        self.share = number("share", share, low=0.5, high=1.0, low_ok=True)
+        self.share = number("share", share, low=0.0, high=1.0, low_ok=True)
         self.softens = bool(np.any(self.c_strain < none))
         self.cut = np.where(self.c_strain < none, self.share**2 / 2, 0.0)
         self.a_Y = np.pi * self.R_star * self.c_Y * self.Y / (2 * self.E_star)
@@ -61,7 +61,7 @@ class Cavity(Backbone):
         if np.any(self.c_strain < 1e-3):
             raise ValueError(f"finite_strain (c_strain) = {np.min(self.c_strain):g}, must be at least 1e-3")
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
-        self.least_overlap = self.yield_overlap + 2 * (1 - LEAST_AREA) * self.R_star / self.share**2
+        self.least_overlap = self.yield_overlap + 2 * (1 - LEAST_AREA) * self.R_star / np.maximum(self.share, 1e-6) ** 2
         self._kept_at_yield = self._kept_pressure(self.yield_overlap)
 
     def kinks(self) -> list[Real]:

@@ -62,6 +62,16 @@ def strain_share(strength1: Real, strength2: Real, *, hardening: Real = HARDENIN
     return np.where(one <= other, (1 + t) / 2, (1 - t) / 2)
 
 
+def curvature_share(share1: Real, *, R_star: Real, R1: Real) -> Array:
+    """Curvature of the bodies, each by its share w of the strain, over that of the contact: R* (w/R1 + (1 - w)/R2).
+
+    1/2 for bodies of equal strength, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane. share1: w of
+    body 1, 0 to 1; R_star, R1 [m] > 0, R1 infinite for a plane. ValueError outside.
+    """
+    w = number("share1", share1, low=0.0, high=1.0, low_ok=True)
+    return np.asarray(1 - w + (2 * w - 1) * (number("R_star", R_star) / number("R1", R1, infinite=True)))
+
+
 def sphere_mass(*, radius: Real, density: Real) -> Real:
     """Mass of a solid sphere [kg]; radius [m] > 0, density [kg/m^3] > 0."""
     return 4 / 3 * np.pi * number("radius", radius) ** 3 * number("density", density)

@@ -15,8 +15,9 @@ from ...scenes.plan import ScenePlan
 from ..host import scene_head
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
 from .macros import ContactWords
+from .primitives import Load, Primitive, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, wear, work_of_adhesion
-from .scene_parts import Fill, PhaseCommands, Plane, Surface, insertions, phases, planes, stl_text, surfaces, table
+from .scene_parts import Fill, PhaseCommands, Surface, insertions, phases, stl_text, surfaces, table
 
 WORKS = {  # what dumps call the works and energies of a sphere
     "plastic_work": "f_plasticWork",
@@ -113,7 +114,7 @@ def _refuse_room(p: ScenePlan) -> None:
 
 
 def _refuse_skin(p: ScenePlan) -> None:
-    """Raise CaseError for a skin with which planes find spheres late that touch them by growth alone."""
+    """Raise CaseError for a skin with which planes and cylinders find spheres late that touch them by growth alone."""
     skin, least = p.case.numerics.skin, SKIN_OF_GROWTH * p.largest
     if p.model.compaction and skin is not None and skin < least:
         raise CaseError(
@@ -148,9 +149,9 @@ class SceneDeck:
     skin: float
     own_skin: bool
     processors: str | None
-    planes: tuple[Plane, ...]
+    primitives: tuple[Primitive, ...]
     meshes: tuple[Surface, ...]
-    loads_of: tuple[tuple[int, str, bool], ...]
+    loads_of: tuple[Load, ...]
     frozen: tuple[int, ...]
     insertions: tuple[Fill, ...]
     phases: tuple[PhaseCommands, ...]
@@ -193,9 +194,9 @@ def deck(p: ScenePlan) -> SceneDeck:
         skin=p.case.numerics.skin or default_skin(p),
         own_skin=p.case.numerics.skin is not None,
         processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
-        planes=planes(p),
+        primitives=primitives(p),
         meshes=surfaces(p),
-        loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
+        loads_of=loads(p),
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         insertions=insertions(p),
         phases=commands,
@@ -219,4 +220,5 @@ def files(p: ScenePlan) -> dict[str, str]:
     }
     if p.scene.table:
         texts["spheres.data"] = decks.render("liggghts/spheres.data.j2", deck=data, rows=table(p))
-    return texts | {f"{name}.stl": stl_text(name, triangles) for name, triangles in p.triangles.items()}
+    formulas = tubes(p)
+    return texts | {f"{name}.stl": stl_text(name, x) for name, x in p.triangles.items() if name not in formulas}

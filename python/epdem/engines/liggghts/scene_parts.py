@@ -11,13 +11,14 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...case.parts import SingleSphere
-from ...case.walls import LinearMove, Move, PlaneWall, PressMove, Room, RotateMove, Vector3, VibrateMove
+from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, Vector3, VibrateMove
 from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
 from ...scenes.walls import surface_rotation
 from ..input_script import WRITE_RESTART, StopCondition, stop_condition, torque_origin, wall_id
+from .primitives import Primitive, primitive, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
@@ -56,17 +57,6 @@ class Fill:
     rate: float | None
     every: int | None
     once: bool
-
-
-@dataclass(frozen=True)
-class Plane:
-    """A plane. force: LIGGGHTS stores the force of each sphere on it."""
-
-    id: str
-    axis: str
-    at: float
-    type: int
-    force: bool
 
 
 @dataclass(frozen=True)
@@ -110,8 +100,8 @@ class PhaseCommands:
     run: PhaseSteps
     steps: int
     start_commands: tuple[str, ...]
-    gates: tuple[Plane, ...]
-    resume_gates: tuple[Plane, ...]
+    gates: tuple[Primitive, ...]
+    resume_gates: tuple[Primitive, ...]
     resume_commands: tuple[str, ...]
     end_commands: tuple[str, ...]
     particles: tuple[NewSphere, ...]
@@ -203,16 +193,6 @@ def _words(*vectors: Sequence[float]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
 
 
-def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> Plane:
-    """A plane of the scene."""
-    return Plane(wall_id(w.name), w.axis, w.at, p.wall_types[w.name], force)
-
-
-def planes(p: ScenePlan) -> tuple[Plane, ...]:
-    """The planes that are always there."""
-    return tuple(plane(p, w, force=w.name in p.measured_walls or bool(p.contacts)) for w in p.scene.planes)
-
-
 def _press(p: ScenePlan, name: str) -> PressMove | None:
     moves = [phase.moves[name] for phase in p.phases if name in phase.moves]
     presses = [move for move in moves if isinstance(move, PressMove)]
@@ -223,9 +203,11 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
 
 def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
     """The walls of triangles."""
-    pressed = {bed.wall for bed in p.pressed}
+    pressed, formulas = {bed.wall for bed in p.pressed}, tubes(p)
     found = []
     for name, mesh in p.scene.meshes.items():
+        if name in formulas:
+            continue
         rotation, words = surface_rotation(mesh), ""
         measured = p.row_columns or name in p.measured_walls or name in pressed
         style = "/stress" if measured or mesh.stress or mesh.wear else ""
@@ -285,7 +267,7 @@ def _new_sphere(p: ScenePlan, b: SingleSphere) -> NewSphere:
 
 def phases(p: ScenePlan) -> tuple[PhaseCommands, ...]:
     """The phases of a scene."""
-    gates = {w.name: plane(p, w) for w in p.scene.gates}
+    gates = {w.name: primitive(p, w) for w in p.scene.gates}
     found: list[PhaseCommands] = []
     with_power = "wall_power" in p.row_columns
     for run in p.phase_steps:

@@ -14,8 +14,7 @@ from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from . import dump
-
-rows = log.scene_rows
+from .primitives import overlaps, tubes, walls
 
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
 FILES = "stress_{}.{}.vtk"  # wall, step
@@ -31,9 +30,20 @@ def _frame(path: Path, count: int) -> np.ndarray:
     return found[0][1]
 
 
+def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
+    """The rows of a run; the log has the forces of primitives on the spheres. Raises EngineError."""
+    return log.scene_rows(p, out, {w.name for w in walls(p)} & {*p.measured_walls})
+
+
+def _meshes(p: ScenePlan) -> list[str]:
+    """Names of the walls of triangles, in the order of their numbers."""
+    formulas = tubes(p)
+    return [name for name in p.scene.meshes if name not in formulas]
+
+
 def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
     """Steps up to `upto` of which a frame is missing or not whole."""
-    steps, kinds = set(), {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if p.scene.meshes else 0}
+    steps, kinds = set(), {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if _meshes(p) else 0}
     for kind, every in kinds.items():
         for step in (n for n in (p.frame_steps(every) if every else []) if n <= upto):
             path = folder / kind.format(step)
@@ -47,7 +57,7 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
     values = [*_slots(p), *columns.FORCE]
-    names += [f"{value}_{w.name}" for w in p.scene.planes for value in values] if p.contacts else []
+    names += [f"{value}_{w.name}" for w in walls(p) for value in values] if p.contacts else []
     return [*names, *p.works]
 
 
@@ -99,29 +109,28 @@ def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame
     return table.assign(i=table[["i", "j"]].min(axis=1), j=table[["i", "j"]].max(axis=1))
 
 
-def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
-    """Contacts with flat walls: overlap by geometry, its largest value from LIGGGHTS's memory of the wall."""
-    planes = []
-    for w in p.scene.planes:
-        overlap = spheres["radius"] - (spheres[w.axis] - w.at).abs()
+def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
+    """Contacts with walls that are a formula: overlap by it, its largest value from LIGGGHTS's memory of the wall."""
+    found = []
+    for w in walls(p):
+        overlap, normal = overlaps(w, spheres)
         largest = np.maximum(spheres[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
         values = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
         others = {slot: spheres[f"{slot}_{w.name}"] for slot in [*_slots(p), *columns.FORCE] if slot != "delta_max"}
-        others |= {f"normal_{axis}": np.sign(spheres[axis] - w.at) if axis == w.axis else 0.0 for axis in "xyz"}
-        planes.append(_in_contact(pd.DataFrame(values | {"delta_max": largest} | others)))
-    return planes
+        others |= {column: normal[:, k] for k, column in enumerate(columns.NORMAL)}
+        found.append(_in_contact(pd.DataFrame(values | {"delta_max": largest} | others)))
+    return found
 
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
-    """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the planes.
+    """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the primitives.
 
     Raises EngineError as `particles` does.
     """
-    parts = [_pairs(p, folder, without), *_planes(p, spheres)]
-    for name in [f"{force}_{w.name}" for w in p.scene.planes for force in columns.FORCE]:
+    parts = [_pairs(p, folder, without), *_primitives(p, spheres)]
+    for name in [f"{force}_{w.name}" for w in walls(p) for force in columns.FORCE]:
         del spheres[name]
-    if p.scene.meshes:
-        names = [*p.scene.meshes]
+    if names := _meshes(p):
         touched = _local(p, MESHES, folder, ["mesh", "i"] if len(names) > 1 else ["i"], without)
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
         length = np.linalg.norm(touched[columns.NORMAL], axis=1)  # of the normal force: 0 without force
@@ -129,7 +138,7 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Co
         parts.append(touched.assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
     found = columns.complete(p, raw, spheres, folder)
-    found.loc[found["wall"].isin([*p.scene.meshes]) & (found["force"] < 0.0), columns.NORMAL] *= -1.0  # attraction
+    found.loc[found["wall"].isin(names) & (found["force"] < 0.0), columns.NORMAL] *= -1.0  # attraction
     return found
 
 

@@ -44,7 +44,7 @@ class Assembly:
         E_star = float(pair.E_star(Ei, self.poisson_ratio, Ej, self.poisson_ratio))
         spec = default_numbers(self.law).pair(self.strength(pi), self.strength(pj))
         R_star = self.radius if plate else self.radius / 2
-        law = spec.backbone(E_star=E_star, R_star=R_star)
+        law = spec.backbone(E_star=E_star, R_star=R_star, radius=self.radius)
         return law
 
     def strength(self, p_y: float) -> float:

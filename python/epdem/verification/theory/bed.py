@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from ...theory.cavity import FINITE_STRAIN, Cavity
 from ...theory.numerics import Array, gauss
-from ...theory.pair import strain_share
+from ...theory.pair import curvature_share, strain_share
 
 Index: TypeAlias = NDArray[np.intp]
 
 PLANE = -1  # in place of the second sphere of a contact
 FIRST_YIELD, FULL_PLASTICITY = 1.6, 2.8  # c_Y and c_P
 MOST_COVER = 1.6  # S1 above which the growth rises no faster
+MOST_GROWTH = 0.2  # of the radius
 LEAST_SCREENING = 0.05
 REACH = 0.25  # growth closes gaps up to this share of the radii
 CHANGE = 1e-13  # of the added overlaps over the radii where the fixed point ends
@@ -38,12 +39,12 @@ RIGID = Material(np.inf, 0.0, np.inf)
 
 
 def growth(cover: Array, volume: Array) -> Array:
-    """Growth g of a sphere over its radius: S2/(4 - 2 S1), S1 and S2: sums of x and x^2, x: depth over radius.
+    """Growth g of a sphere over its radius: S2/(4 - 2 S1), at most 0.2; S1, S2: sums of x, x^2, x: depth over radius.
 
     A plane at (1 - x) R cuts a cap of the volume pi (x^2 + 2 x g) R^3, to first order in g, off a sphere that grew by g
     R. All caps have the volume of the growth, 4 pi g R^3.
     """
-    return np.asarray(volume / (4.0 - 2.0 * np.minimum(cover, MOST_COVER)))
+    return np.minimum(volume / (4.0 - 2.0 * np.minimum(cover, MOST_COVER)), MOST_GROWTH)
 
 
 def screening(others: Array, own: Array, radius: Array, nu: Array) -> Array:
@@ -120,7 +121,6 @@ class Bed:
 
     def _law_of(self, near: Index) -> Cavity:
         if self._law is None or not np.array_equal(near, self._near):
-            w = self.strain_i[near]
             self._near, self._law = (
                 near,
                 Cavity(
@@ -130,7 +130,7 @@ class Bed:
                     c_Y=FIRST_YIELD,
                     c_P=FULL_PLASTICITY,
                     c_strain=self._c_strain,
-                    share=np.maximum(w, 1 - w),
+                    share=curvature_share(self.strain_i[near], R_star=self.R_star[near], R1=self.R_i[near]),
                 ),
             )
         return self._law

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls that LIGGGHTS has as a formula, planes and endless cylinders, and what sums the forces on all walls."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from ...base.rendering import number
+from ...case.walls import CylinderWall, MeshWall, PlaneWall
+from ...scenes.plan import ScenePlan
+from ..input_script import wall_id
+
+WIDE = (
+    3.0  # radius of a cylinder over the largest one of its spheres: LIGGGHTS divides by zero for a sphere on the axis
+)
+
+
+@dataclass(frozen=True)
+class Primitive:
+    """style: with its numbers. force: LIGGGHTS stores the force of each sphere on it."""
+
+    id: str
+    style: str
+    type: int
+    force: bool
+
+
+@dataclass(frozen=True)
+class Load:
+    """The force on a wall in the rows, of number `number`, and the torque, of all but planes.
+
+    mesh: LIGGGHTS sums both. variables: (name, formula) of each sphere, of which the last three are the torque.
+    """
+
+    number: int
+    id: str
+    mesh: bool
+    variables: tuple[tuple[str, str], ...] = ()
+
+
+def tubes(p: ScenePlan) -> dict[str, CylinderWall]:
+    """The cylinders that LIGGGHTS has as a formula: at rest, as long as the room, wide, without results per triangle.
+
+    A sphere that slides along the triangles of a round wall begins a new contact at each edge.
+    """
+
+    def fits(w: MeshWall) -> bool:
+        if not isinstance(w, CylinderWall) or w.ends or w.angular_velocity or w.stress or w.wear:
+            return False
+        k = 2 * "xyz".index(w.axis)
+        spans = w.start <= p.box[k] and w.to >= p.box[k + 1]
+        return spans and w.diameter > 2.0 * WIDE * p.largest and not any(w.name in phase.moves for phase in p.phases)
+
+    return {name: w for name, w in p.scene.meshes.items() if isinstance(w, CylinderWall) and fits(w)}
+
+
+def walls(p: ScenePlan) -> list[PlaneWall | CylinderWall]:
+    """The walls that are a formula and always there."""
+    return [*p.scene.planes, *tubes(p).values()]
+
+
+def primitive(p: ScenePlan, w: PlaneWall | CylinderWall, *, force: bool = False) -> Primitive:
+    """A wall in words of LIGGGHTS."""
+    if isinstance(w, PlaneWall):
+        style = f"{w.axis}plane {number(w.at)}"
+    else:
+        k = "xyz".index(w.axis)
+        centre = [w.axis_point[(k + way) % 3] for way in (1, 2)]
+        style = f"{w.axis}cylinder {' '.join(map(number, (0.5 * w.diameter, *centre)))}"
+    return Primitive(wall_id(w.name), style, p.wall_types[w.name], force)
+
+
+def primitives(p: ScenePlan) -> tuple[Primitive, ...]:
+    """The walls that are a formula and always there, in words of LIGGGHTS."""
+    return tuple(primitive(p, w, force=w.name in p.measured_walls or bool(p.contacts)) for w in walls(p))
+
+
+def loads(p: ScenePlan) -> tuple[Load, ...]:
+    """What sums the forces on the walls that the rows name."""
+    round_ = tubes(p)
+    return tuple(
+        Load(n, wall_id(name), name in p.scene.meshes and name not in round_, _torque(n, round_.get(name)))
+        for n, name in enumerate(p.measured_walls, 1)
+    )
+
+
+def _torque(n: int, w: CylinderWall | None) -> tuple[tuple[str, str], ...]:
+    """Torque of the force on a sphere at the point of the cylinder that it touches, about the origin of the room."""
+    if w is None:
+        return ()
+    across = [x for x in "xyz" if x != w.axis]
+    off = {x: f"({x}-{number(c)})" for x, c in zip("xyz", w.axis_point, strict=True)}
+    least = (1e-9 * w.diameter) ** 2  # a sphere on the axis bears no force
+    stretch = f"{number(0.5 * w.diameter)}/sqrt({off[across[0]]}^2+{off[across[1]]}^2+{number(least)})"
+    place = [
+        x if x == w.axis else f"({number(c)}+{off[x]}*v_stretch{n})" for x, c in zip("xyz", w.axis_point, strict=True)
+    ]
+    force = [f"f_force_{wall_id(w.name)}[{k}]" for k in (1, 2, 3)]
+    turns = [((k + 1) % 3, (k + 2) % 3) for k in range(3)]
+    torque = [f"{place[a]}*{force[b]}-{place[b]}*{force[a]}" for a, b in turns]
+    return ((f"stretch{n}", stretch), *((f"torque{n}_{k}", formula) for k, formula in enumerate(torque, 1)))
+
+
+def overlaps(w: PlaneWall | CylinderWall, spheres: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
+    """Overlap [m] of each sphere with a wall without growth, and the normal from the wall to the sphere, (n, 3)."""
+    x, radius = spheres[[*"xyz"]].to_numpy(float), spheres["radius"].to_numpy(float)
+    off, k = np.zeros(x.shape), "xyz".index(w.axis)
+    if isinstance(w, PlaneWall):
+        off[:, k] = x[:, k] - w.at
+    else:
+        off = x - np.array(w.axis_point)
+        off[:, k] = 0.0
+        distance = np.linalg.norm(off, axis=1, keepdims=True)
+        off *= 1.0 - 0.5 * w.diameter / np.where(distance > 0.0, distance, np.inf)
+    gap = np.linalg.norm(off, axis=1, keepdims=True)
+    return radius - gap[:, 0], off / np.where(gap > 0.0, gap, 1.0)
