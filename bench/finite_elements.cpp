@@ -4,12 +4,12 @@
 //   g++ -std=c++17 -O3 -march=native -ffast-math bench/finite_elements.cpp -o finite_elements
 //   ./finite_elements LATTICE E/Y nu n D [speed [back [ball]]] > lattice.csv
 // LATTICE: sc, fcc, bcc, hex (simple hexagonal), tet (simple tetragonal, two planes at 1.1 of the distance of the
-// others), die (simple cubic, four planes stay) or pair (two planes, or two rigid balls of the radius `ball`); n: elements
-// along an edge of the inner cube, D: last relative density, of a pair the last distance of the planes; speed of the
-// planes over sqrt(Y/density), 0.02 by default. With `back`, the speed of the release, the planes stop at D, are held
-// there and go back until they are free; a first column is the phase: 0, 1 and 2. One octant, hexahedra with 2 x 2 x 2
-// points and one pressure p = K ln(V/V0) each (Q1P0), ideally plastic J2 with the Jaumann rate of the deviator, central
-// differences. Masses of the elements are scaled to one critical time step.
+// others), die (simple cubic, four planes stay) or pair (two planes, or two rigid balls of the radius `ball`); n:
+// elements along an edge of the inner cube, D: last relative density, of a pair the last distance of the planes; speed
+// of the planes over sqrt(Y/density), 0.02 by default. With `back`, the speed of the release, the planes stop at D, are
+// held there and go back until they are free; a first column is the phase: 0, 1 and 2. One octant, hexahedra with 2 x 2
+// x 2 points and one pressure p = K ln(V/V0) each (Q1P0), ideally plastic J2 with the Jaumann rate of the deviator,
+// central differences. Masses of the elements are scaled to one critical time step.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -55,8 +55,8 @@ class LawModel : public NormalModel {
     const Observer observer{keep && plastic_work_ ? &energies : nullptr};
     const auto normal = [&](auto&& growth) {
       return normal_contact(
-          pair, R_star, s.radi, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
-          [&] { return s.meff; }, !keep, observer, growth);
+          pair, R_star, s.radi, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0,
+          pair.dashpot > 0.0, [&] { return s.meff; }, !keep, observer, growth);
     };
     NormalContact<Law> contact;
     if constexpr (compacts<Law>) {

@@ -11,7 +11,7 @@ import pytest
 from stored_runs import RUNS, STORED, data_of, planned
 
 from epdem.case.scene import parse
-from epdem.engines import log, scene_engine
+from epdem.engines import scene_engine
 from epdem.engines.liggghts import scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
@@ -181,7 +181,7 @@ Step Atoms KinEng load1[3]
 
 def test_a_continued_log_keeps_the_row_of_its_restart_and_replaces_what_came_after_it(tmp_path):
     (tmp_path / "log").write_text(CONTINUED)
-    rows = log.scene_rows(planned("settle"), tmp_path / "log")
+    rows = scene_tables.rows(planned("settle"), tmp_path / "log")
     assert rows["step"].to_list() == [0, 630, 1260, 1890]
     assert (-rows["floor_force_z"]).to_list() == [0, 1e-3, 2e-3, 3e-3]  # of a plane the log has the force on spheres
     assert rows["particles"].to_list() == [8, 8, 8, 7]

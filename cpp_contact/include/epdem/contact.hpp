@@ -236,9 +236,9 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   // bodies that touch without being attached begin anew in the models beside the law
   [[maybe_unused]] const auto attached = detail::attached<Law>(history.law);
   if constexpr (adheres<Law>) detail::keep_where<T>(attached, history.friction);
-  NormalContact<Law> now =
-      normal_contact(pair, c.R_star, c.radius_i, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
-                     settings.damped, settings.viscous, m_star, settings.repeats, observer, history.growth);
+  NormalContact<Law> now = normal_contact(pair, c.R_star, c.radius_i, history.law, c.overlap,
+                                          T(-c.normal_velocity * settings.dt), -c.normal_velocity, settings.damped,
+                                          settings.viscous, m_star, settings.repeats, observer, history.growth);
   history.law = now.step.after;
 
   ContactLoads<T> loads{now.force * c.normal, {}, {}};

@@ -54,8 +54,9 @@ inline ImpactOutput<Number<Law>> impact(ContactConstants<Law> pair, const Impact
   for (;; ++n) {
     // dashpot and adhesion see the speed of the middle of the last step, as in an engine that moves before it finds
     // contacts
-    const NormalContact<Law> contact = normal_contact(pair, in.R_star, in.R_star, state, alpha, T(n > 0 ? v * in.time_step : 0.0),
-                                                      v, false, in.viscous > 0.0, [&] { return in.m_star; });
+    const NormalContact<Law> contact =
+        normal_contact(pair, in.R_star, in.R_star, state, alpha, T(n > 0 ? v * in.time_step : 0.0), v, false,
+                       in.viscous > 0.0, [&] { return in.m_star; });
     const Step<Law>& now = contact.step;
     force = contact.force;
     if (n > 0) v -= half * contact.force;

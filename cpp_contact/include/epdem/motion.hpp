@@ -32,8 +32,8 @@ class MovedContact {
       friction_ = {};
       if constexpr (!adheres<Law>) state_ = {};
     }
-    const NormalContact<Law> now =
-        normal_contact(pair_, R_star_, R_star_, state_, motion.overlap, motion.closing, T{}, false, false, [] { return T{}; });
+    const NormalContact<Law> now = normal_contact(pair_, R_star_, R_star_, state_, motion.overlap, motion.closing, T{},
+                                                  false, false, [] { return T{}; });
     state_ = now.step.after;
     if (!(now.step.radius > 0.0 || motion.overlap > 0.0)) return {now.force, {}};
     // velocities are displacements in a step of length 1

@@ -51,8 +51,8 @@ inline double strain_share(double strength_i, double strength_j, double hardenin
 template <class T>
 struct BodyShares {
   T strain_i = T{} + 0.5;  // strain_share of i
-  T compliance_i{};      // of i in the elastic compliance: E* (1-nu_i^2)/E_i; j has the rest
-  T bulk_i{}, bulk_j{};  // compliance share times (1-2 nu)/(2 pi (1-nu^2))
+  T compliance_i{};        // of i in the elastic compliance: E* (1-nu_i^2)/E_i; j has the rest
+  T bulk_i{}, bulk_j{};    // compliance share times (1-2 nu)/(2 pi (1-nu^2))
 };
 
 inline BodyShares<double> body_shares(Elastic i, Elastic j, double strain_share_i) noexcept {

@@ -116,9 +116,17 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
 
 def closure(table: pd.DataFrame) -> float:
     """Largest balance over the energy that moved: of the start, and what walls put in."""
+    return float(table["balance"].abs().max() / _moved(table))
+
+
+def gained(table: pd.DataFrame) -> float:
+    """The lowest work of friction, where it is the rest of the balance, over the energy that moved; at most 0."""
+    return min(0.0, float(table["friction"].min() / _moved(table)))
+
+
+def _moved(table: pd.DataFrame) -> float:
     terms = table.reindex(columns=["kinetic", "rotation", "elastic", "plastic", "adhesion", "work"]).abs().max().sum()
-    fall = abs(table["gravity"].iloc[0] - table["gravity"].min())
-    return float(table["balance"].abs().max() / max(terms, fall, 1e-300))
+    return max(float(terms), float(abs(table["gravity"].iloc[0] - table["gravity"].min())), 1e-300)
 
 
 Row = dict[str, object]
@@ -133,6 +141,7 @@ CHECKS = {  # the unit of value and expected; what passes
     "force_on_all_walls": Quantity("N", "the force on all walls is the weight of the spheres"),
     "void": Quantity("", "number of pressed beds that lost all void, which ended the run"),
     "energy_residual": Quantity("", "the energy balance closes: no term is a remainder"),
+    "energy_gained": Quantity("", "friction, the rest of the energy balance, is not negative"),
 }
 COLUMNS = ("key", "check", "value", "expected", "error", "tolerance", "unit", "passed")
 AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed at rest
@@ -317,4 +326,6 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     rows += _of_parts(p, tables)
     if "energy_balance" in tables and not p.model.loses_energy:
         rows.append(_row("energy_residual", closure(tables["energy_balance"]), 0.0, 0.01))
+    elif "energy_balance" in tables and "friction_work" not in p.works:
+        rows.append(_row("energy_gained", gained(tables["energy_balance"]), 0.0, 0.01))
     return pd.DataFrame(rows, columns=COLUMNS)
