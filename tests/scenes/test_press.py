@@ -133,6 +133,28 @@ def test_a_round_die_has_the_same_densities_in_every_engine(engine, tmp_path):
     assert 0.3 < found["radial_over_axial"]["stage1"] < 1.0
 
 
+def round_die(particles, folder, engine, walls="powder"):
+    """Powder in a round die without friction, to 60 MPa."""
+    data = without(
+        press(diameter="0.6 mm", count=120, stages=["60 MPa"], walls=walls, particles=particles), "box", "hold"
+    )
+    data["materials"]["soft"] = data["materials"]["powder"] | {"young_modulus": "6 GPa", "yield_stress": "60 MPa"}
+    return run(write_case(data, folder), engine, out=folder / "out")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_energies_of_two_powders_in_a_round_die_close_and_the_mixture_lies_between_them(engine, tmp_path):
+    """A soft sphere between hard ones is not softer than between soft ones; triangles of a wall take no energy."""
+    half = [{"material": name, "radius": "50 um", "share": 0.5} for name in ("powder", "soft")]
+    density = []
+    for n, (particles, walls) in enumerate([(half[:1], "powder"), (half, "powder"), (half[1:], "soft")]):
+        outcome = round_die([p | {"share": 1.0 / len(particles)} for p in particles], tmp_path / f"{n}", engine, walls)
+        balance = outcome.results.tables["energy_balance"]
+        assert balance["balance"].abs().max() < 4e-3 * balance["work"].max()
+        density.append(outcome.results.tables["stages"]["relative_density"].iloc[0])
+    assert density[0] < density[1] < density[2]
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
     """A box without friction, powder without weight; the floor moves as far as the punch until the release."""

@@ -241,3 +241,10 @@ def test_the_weight_is_not_compared_with_a_sum_of_much_larger_forces(pressed, co
     checked = checks.checks(p, {"rows": found, "particles": spheres})
     checked = checked[checked["key"] == "force_on_all_walls"]
     assert (len(checked) == 1) == compared and checked["passed"].all() and (checked["tolerance"] < 0.12).all()
+
+
+def test_friction_that_gives_energy_back_fails_a_check():
+    """Friction as the rest of a balance: 2 % of the energy that moved came from nothing."""
+    table = pd.DataFrame({"kinetic": [1.0, 0.5], "gravity": [0.0, 0.0], "friction": [0.0, -0.02]})
+    assert checks.gained(table) == pytest.approx(-0.02)
+    assert checks.gained(table.assign(friction=[0.0, 0.3])) == 0.0
