@@ -35,13 +35,20 @@ inline ContactConstants<Law> of_law(const Law& law) noexcept {
   return pair;
 }
 
-/// The law of a contact with the radius of body i.
-template <class Law, class T = Number<Law>>
-EPDEM_INLINE Law law_at(const ContactConstants<Law>& pair, T R_star, T radius_i) noexcept {
-  Law law = pair.law;
+/// Whether the law of a pair depends on the radii of its contacts.
+template <class Law>
+EPDEM_INLINE bool depends_on_radii(const ContactConstants<Law>& pair) noexcept {
   if constexpr (is_confined<Law>)
-    if (rarely(any(law.softens()) && any(pair.bodies.strain_i != 0.5)))
-      law.confine(curvature_share(pair.bodies, R_star, radius_i));
+    return any(pair.law.softens()) && any(pair.bodies.strain_i != 0.5);
+  else
+    return false;
+}
+
+/// The law of such a contact; a call, so that other contacts keep their registers.
+template <class Law, class T = Number<Law>>
+[[gnu::noinline]] Law law_at(const ContactConstants<Law>& pair, T R_star, T radius_i) noexcept {
+  Law law = pair.law;
+  if constexpr (is_confined<Law>) law.confine(curvature_share(pair.bodies, R_star, radius_i));
   return law;
 }
 
@@ -98,7 +105,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
                                          bool repeats = false, Observer&& observer = {},
                                          Growth&& growth = {}) noexcept {
   using T = Number<Law>;
-  const Law law = law_at(pair, R_star, radius_i);
+  const Law law = rarely(depends_on_radii(pair)) ? law_at(pair, R_star, radius_i) : pair.law;
   NormalContact<Law> now{};
   now.overlap = overlap;
   [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth
