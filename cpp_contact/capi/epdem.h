@@ -62,8 +62,8 @@ const char* epdem_declarations(void);
 
 /* n steps, each from its own R_star, delta_max and delta (with adhesion: of a contact that has stood since it reached
  * delta_max, at rest); `parameters` in the order of the declaration, then one more number of finite strain: the
- * curvature of what yields over the curvature of the contact, 1/2 for bodies of equal strength, 1 for a sphere on a
- * rigid plane, 0 for a rigid sphere on a plane. */
+ * mean curvature of both bodies, weighted by their shares of the strain, times R*: 1/2 for bodies of equal strength, 1
+ * for a sphere on a rigid plane, 0 for a rigid sphere on a plane. */
 int epdem_step(int law, double E_star, const double* parameters, size_t n, const double* R_star,
                const double* delta_max, const double* delta, epdem_step_result* out);
 

@@ -108,7 +108,7 @@ UNLIKE = {
 
 @pytest.mark.parametrize("ball", UNLIKE)
 def test_a_soft_sphere_between_hard_ones_of_any_size_against_finite_elements(ball):
-    """The pressure falls with the radius of contact over that of the body that yields, not with the strain w a/R*."""
+    """The pressure falls with the contact radius over the radius of the softer body, not with the strain w a/R*."""
     d, F = table("pair_plane" if ball == np.inf else f"pair_{ball:g}")
     E, nu, R_star = MATERIALS[""].E, MATERIALS[""].nu, float(pair.R_star(1.0, ball))
     reference = smooth(d, F[:, 0], 1.0 - OVERLAPS)

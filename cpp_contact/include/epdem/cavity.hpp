@@ -16,7 +16,7 @@ inline constexpr double least_area = 1.0 / 1.65;
 ///   s = alpha/alpha_Y;  1 < s < s_P:  a = a_Y s^((1+beta)/2),  p_m = Y [2 c_Y/3 + (1+beta)/3 ln s],
 ///   tau = ln s/ln s_P. Nothing is fitted.
 /// Option finite_strain: p_m times f(s)/f(s_Y), s = l a/R*, f(s) = 1 - exp(-c s^-0.7), c = 0.82 (Jackson and Green
-/// 2005, J. Tribol. 127, 343), l: curvature_share of what yields; and on the area that a plane cuts from a sphere: a^2
+/// 2005, J. Tribol. 127, 343), l: curvature_share of both bodies; and on the area that a plane cuts from a sphere: a^2
 /// times k = 1 - l^2 (alpha - alpha_Y)/(2 R*). The division keeps the force continuous at first yield; k >= 1/1.65
 /// keeps it from falling.
 template <class T>

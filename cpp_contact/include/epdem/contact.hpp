@@ -35,21 +35,24 @@ inline ContactConstants<Law> of_law(const Law& law) noexcept {
   return pair;
 }
 
-/// Whether the law of a pair depends on the radii of its contacts.
-template <class Law>
-EPDEM_INLINE bool depends_on_radii(const ContactConstants<Law>& pair) noexcept {
-  if constexpr (is_confined<Law>)
-    return any(pair.law.softens()) && any(pair.bodies.strain_i != 0.5);
-  else
-    return false;
+/// The law of a contact of unlike bodies; a call, so that other contacts keep their registers.
+template <class Law, class T = Number<Law>>
+[[gnu::noinline]] Law confined(const ContactConstants<Law>& pair, T R_star, T radius_i) noexcept {
+  Law law = pair.law;
+  law.confine(curvature_share(pair.bodies, R_star, radius_i));
+  return law;
 }
 
-/// The law of such a contact; a call, so that other contacts keep their registers.
+/// The law of a contact, by reference where the law does not depend on the radii of its contacts.
 template <class Law, class T = Number<Law>>
-[[gnu::noinline]] Law law_at(const ContactConstants<Law>& pair, T R_star, T radius_i) noexcept {
-  Law law = pair.law;
-  if constexpr (is_confined<Law>) law.confine(curvature_share(pair.bodies, R_star, radius_i));
-  return law;
+EPDEM_INLINE decltype(auto) law_at(const ContactConstants<Law>& pair, [[maybe_unused]] T R_star,
+                                   [[maybe_unused]] T radius_i) noexcept {
+  if constexpr (is_confined<Law>) {
+    const bool unlike = any(pair.law.softens()) && any(pair.bodies.strain_i != 0.5);
+    return rarely(unlike) ? confined(pair, R_star, radius_i) : pair.law;
+  } else {
+    return (pair.law);
+  }
 }
 
 /// Observer that records nothing.
@@ -105,7 +108,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
                                          bool repeats = false, Observer&& observer = {},
                                          Growth&& growth = {}) noexcept {
   using T = Number<Law>;
-  const Law law = rarely(depends_on_radii(pair)) ? law_at(pair, R_star, radius_i) : pair.law;
+  const Law& law = law_at(pair, R_star, radius_i);
   NormalContact<Law> now{};
   now.overlap = overlap;
   [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth

@@ -69,8 +69,8 @@ inline BodyShares<double> mirrored(const BodyShares<double>& b) noexcept {
   return {1.0 - b.strain_i, 1.0 - b.compliance_i, b.bulk_j, b.bulk_i};
 }
 
-/// Curvature of the bodies, each by its share of the strain, over that of the contact: R* (w_i/R_i + w_j/R_j), 1/2
-/// between bodies of equal strength, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane.
+/// Mean curvature of both bodies, weighted by their shares of the strain, times R*: R* (w_i/R_i + w_j/R_j), 1/2 between
+/// bodies of equal strength, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane.
 template <class T>
 EPDEM_INLINE T curvature_share(const BodyShares<T>& bodies, T R_star, T radius_i) noexcept {
   return 1.0 - bodies.strain_i + (2.0 * bodies.strain_i - 1.0) * (R_star / radius_i);

@@ -125,8 +125,7 @@ def cases(*, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
 class Law:
     """One law with its constants: E_star [Pa] and the law's parameters by name, SI.
 
-    share: the curvature of what yields over the curvature of the contact (`pair.curvature_share`), which finite strain
-    takes.
+    share: `pair.curvature_share` of the contact, on which finite strain depends.
     Raises CaseError for an unknown law or parameter, or values outside the law's range.
     """
 

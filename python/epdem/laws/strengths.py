@@ -110,8 +110,12 @@ class LawSpec:
         return max(self._first_share, 1.0 - self._first_share)
 
     def curvature_share(self, R_star: Real, radius: Real) -> Array:
-        """`pair.curvature_share` of contacts of these R_star and radii of the first body [m]."""
-        return curvature_share(self._first_share, R_star=R_star, R1=radius)
+        """`pair.curvature_share` of contacts of these R_star and radii of the first body [m]; 1/2 without finite strain.
+
+        Only finite strain depends on it.
+        """
+        one = self._first_share if "finite_strain" in self.ratios() else 0.5
+        return curvature_share(one, R_star=R_star, R1=radius)
 
     @property
     def _first_share(self) -> float:

@@ -269,7 +269,7 @@ def energies(
         for share in np.unique(shares):
             at = of_types[shares == share]
             of_contacts = (x[at] for x in (R_star, radius_i, overlap, delta_max, attached, screening))
-            for name, value in _one_law(spec, E_star, share, *of_contacts).items():
+            for name, value in _one_law(spec, E_star, *of_contacts).items():
                 out.loc[at, name] = value
     return out
 
@@ -277,7 +277,6 @@ def energies(
 def _one_law(
     spec: LawSpec,
     E_star: float,
-    share: float,
     R: np.ndarray,
     radius: np.ndarray,
     overlap: np.ndarray,
@@ -294,6 +293,7 @@ def _one_law(
         adhesive = spec.adhesive(E_star=E_star, R_star=R)
         return _with_adhesion(adhesive, overlap, np.maximum(largest, overlap), attached)
     theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
+    share = float(spec.curvature_share(R[0], radius[0]))
     law = Law(spec.name, E_star=E_star, share=share, **spec.parameters)
     largest = np.maximum(largest, overlap)
     given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)

@@ -21,8 +21,8 @@ class Cavity(Backbone):
     Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default. Finite strain with a of small strain:
     p_m times f(l a/R*)/f(l a_Y/R*), f(x) = 1 - exp(-c x^-0.7), and the area that a plane cuts, a^2 times k =
     max(1/1.65, 1 - l^2 (alpha - alpha_Y)/(2 R*)). c_strain = c, by default so large that nothing changes; share = l,
-    0 to 1, the curvature of what yields (`pair.curvature_share`). ValueError where the law would create energy at
-    yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
+    0 to 1, the weighted curvature of both bodies (`pair.curvature_share`). ValueError where the law would create energy
+    at yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
     """
 
     name = "cavity"

@@ -63,7 +63,7 @@ def strain_share(strength1: Real, strength2: Real, *, hardening: Real = HARDENIN
 
 
 def curvature_share(share1: Real, *, R_star: Real, R1: Real) -> Array:
-    """Curvature of the bodies, each by its share w of the strain, over that of the contact: R* (w/R1 + (1 - w)/R2).
+    """Mean curvature of two bodies, weighted by their shares of the strain, times R*: R* (w/R1 + (1 - w)/R2).
 
     1/2 for bodies of equal strength, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane. share1: w of
     body 1, 0 to 1; R_star, R1 [m] > 0, R1 infinite for a plane. ValueError outside.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls that LIGGGHTS has as a formula, planes and endless cylinders, and what sums the forces on all walls."""
+"""Walls that LIGGGHTS has as a formula, planes and endless cylinders, and the sums of the forces on all walls."""
 
 from dataclasses import dataclass
 
@@ -7,13 +7,11 @@ import numpy as np
 import pandas as pd
 
 from ...base.rendering import number
-from ...case.walls import CylinderWall, MeshWall, PlaneWall
+from ...case.walls import CylinderWall, PlaneWall
 from ...scenes.plan import ScenePlan
 from ..input_script import wall_id
 
-WIDE = (
-    3.0  # radius of a cylinder over the largest one of its spheres: LIGGGHTS divides by zero for a sphere on the axis
-)
+WIDE = 3.0  # radius of a cylinder over the largest radius of a sphere: LIGGGHTS divides by zero on the axis
 
 
 @dataclass(frozen=True)
@@ -45,12 +43,12 @@ def tubes(p: ScenePlan) -> dict[str, CylinderWall]:
     A sphere that slides along the triangles of a round wall begins a new contact at each edge.
     """
 
-    def fits(w: MeshWall) -> bool:
-        if not isinstance(w, CylinderWall) or w.ends or w.angular_velocity or w.stress or w.wear:
-            return False
+    def fits(w: CylinderWall) -> bool:
         k = 2 * "xyz".index(w.axis)
         spans = w.start <= p.box[k] and w.to >= p.box[k + 1]
-        return spans and w.diameter > 2.0 * WIDE * p.largest and not any(w.name in phase.moves for phase in p.phases)
+        plain = not (w.ends or w.angular_velocity or w.stress or w.wear)
+        moves = any(w.name in phase.moves for phase in p.phases)
+        return spans and plain and not moves and w.diameter > 2.0 * WIDE * p.largest
 
     return {name: w for name, w in p.scene.meshes.items() if isinstance(w, CylinderWall) and fits(w)}
 
@@ -77,7 +75,7 @@ def primitives(p: ScenePlan) -> tuple[Primitive, ...]:
 
 
 def loads(p: ScenePlan) -> tuple[Load, ...]:
-    """What sums the forces on the walls that the rows name."""
+    """The sums of the forces on the walls that the rows name."""
     round_ = tubes(p)
     return tuple(
         Load(n, wall_id(name), name in p.scene.meshes and name not in round_, _torque(n, round_.get(name)))
