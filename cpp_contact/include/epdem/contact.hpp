@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include "adhesive.hpp"
 #include "compaction.hpp"
@@ -45,13 +46,14 @@ template <class Law, class T = Number<Law>>
 
 /// The law of a contact, by reference where the law does not depend on the radii of its contacts.
 template <class Law, class T = Number<Law>>
-EPDEM_INLINE decltype(auto) law_at(const ContactConstants<Law>& pair, [[maybe_unused]] T R_star,
-                                   [[maybe_unused]] T radius_i) noexcept {
+EPDEM_INLINE std::conditional_t<is_confined<Law>, Law, const Law&> law_at(const ContactConstants<Law>& pair,
+                                                                          [[maybe_unused]] T R_star,
+                                                                          [[maybe_unused]] T radius_i) noexcept {
   if constexpr (is_confined<Law>) {
     const bool unlike = any(pair.law.softens()) && any(pair.bodies.strain_i != 0.5);
     return rarely(unlike) ? confined(pair, R_star, radius_i) : pair.law;
   } else {
-    return (pair.law);
+    return pair.law;
   }
 }
 

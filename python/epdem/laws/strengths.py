@@ -110,7 +110,7 @@ class LawSpec:
         return max(self._first_share, 1.0 - self._first_share)
 
     def curvature_share(self, R_star: Real, radius: Real) -> Array:
-        """`pair.curvature_share` of contacts of these R_star and radii of the first body [m]; 1/2 without finite strain.
+        """`pair.curvature_share` of contacts of these R_star and radii of body i [m]; 1/2 without finite strain.
 
         Only finite strain depends on it.
         """
