@@ -34,6 +34,28 @@ class Trajectory:
     end_power: float | None = None
 
 
+def oblique_pairs(
+    plan: Plan, place: np.ndarray, velocity: np.ndarray, force: np.ndarray, spin: np.ndarray, seconds: dict[str, float]
+) -> Trajectory:
+    """Oblique impacts of two spheres, along and across their line of centres, until the first sample apart.
+
+    place [m], velocity [m/s], force [N]: x and z of every body, shape (2, samples, bodies). spin [rad/s]: of the body.
+    """
+    n, x = plan.n, plan.experiment
+    between, speed = (a[:, :, :n] - a[:, :, n:] for a in (place, velocity))
+    distance = np.hypot(*between)
+    normal = between / distance
+    along = (force[:, :, :n] * normal).sum(axis=0)
+    sample = np.arange(len(along))[:, None]
+    apart = np.minimum(np.where(along > 0, sample, -1).max(axis=0) + 1, len(along) - 1)
+    overlap, load, approach = (
+        np.where(sample <= apart, a, np.nan).T
+        for a in (x.body.radius + x.target.radius - distance, along, -(speed * normal).sum(axis=0))
+    )
+    across = (speed[0] * normal[1] - speed[1] * normal[0])[apart, np.arange(n)]
+    return Trajectory(plan.time_step, overlap, load, approach, seconds, across, spin)
+
+
 ImpactEngine = Engine[Plan, Trajectory]
 
 

@@ -206,7 +206,7 @@ class Group:
 def side_by_side(plan: Plan) -> tuple[Group, ...]:
     """The bodies, and the targets unless they are planes; impact k of the plan is row k of each group.
 
-    Spheres meet in their centre-of-mass frame, where each has its share of speed and gap.
+    Spheres meet in their centre-of-mass frame, where each has its share of speed and gap, one above the other.
     """
     x, n = plan.experiment, plan.n
     wall = math.isinf(x.target.radius)
@@ -216,7 +216,9 @@ def side_by_side(plan: Plan) -> tuple[Group, ...]:
     share = 1.0 if wall else x.m_star / x.body.mass
 
     def group(body: Body, z: np.ndarray, vz: np.ndarray, vx: np.ndarray, spin: np.ndarray | None = None) -> Group:
-        return Group(body, np.stack([*place, z], axis=1), np.stack([vx, np.zeros(n), vz], axis=1), spin)
+        left = 0.0 if wall else vx * plan.gap / plan.speed
+        centres = np.stack([place[0] - left, place[1], z], axis=1)
+        return Group(body, centres, np.stack([vx, np.zeros(n), vz], axis=1), spin)
 
     vx, spin = np.zeros(n), None
     if x.oblique:

@@ -13,7 +13,7 @@ from . import oblique
 from .experiment import Experiment, strain_rate
 
 FASTEST = 1e4  # strain rate [1/s] up to which the strength of metals grows with its logarithm
-LARGEST_TURN = 1e-3  # error of e_n by the turn of the line of centres that is not worth a sentence
+LARGEST_TURN = 1e-3  # error of the overlap by the turn of the line of centres that is not worth a sentence
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def predict(experiment: Experiment) -> Prediction:
         caveats=(
             *validity.caveats(law, **pair),
             *_too_fast(x, columns["radius_max"]),
-            *_turning(x, columns["contact_time"]),
+            *_turning(x, columns["contact_time"], columns["overlap_max"]),
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain"], x.speed)),
         observation_time=observed,
@@ -109,19 +109,20 @@ def _too_fast(x: Experiment, radius: np.ndarray) -> list[str]:
     ]
 
 
-def _turning(x: Experiment, contact_time: np.ndarray) -> list[str]:
+def _turning(x: Experiment, contact_time: np.ndarray, overlap: np.ndarray) -> list[str]:
     """A sentence on oblique impacts of two spheres whose line of centres turns during contact, for theory holds it."""
     if not x.oblique or not np.isfinite(x.target.radius):
         return []
     slip = x.speed * np.tan(x.friction_of_oblique().angle)
     turn = slip * contact_time / (x.body.radius + x.target.radius)
-    error = turn * slip / x.speed
+    error = (slip / x.speed) ** 2 * overlap / (x.body.radius + x.target.radius)  # work of the centrifugal force
     if not (error > LARGEST_TURN).any():
         return []
     angle = np.degrees(x.friction_of_oblique().angle[error > LARGEST_TURN].min())
     return [
         f"the line of centres turns by up to {np.degrees(np.nanmax(turn)):.2g} deg during contact, which theory "
-        f"neglects: from {angle:.3g} deg on, e_n of engines with positions is lower, by up to {np.nanmax(error):.2g}"
+        f"neglects: from {angle:.3g} deg on, overlap_max and force_max of engines with positions are lower, by up to "
+        f"about {100 * np.nanmax(error):.2g} %"
     ]
 
 

@@ -12,7 +12,7 @@ from ...base import rendering as decks
 from ...base.files import stored_results
 from ...base.processes import most_ranks
 from ...errors import EngineError
-from ...impacts.engine import Trajectory, check_features
+from ...impacts.engine import Trajectory, check_features, oblique_pairs
 from ...impacts.experiment import Body
 from ...impacts.plan import Plan, approach
 from ...jobs.engine import Feature, Report
@@ -31,7 +31,7 @@ PATH, END, LOG = "path.txt", "end.txt", "log.lammps"
 @dataclass(frozen=True)
 class ImpactDeck:
     """Values of the template of impacts. types: materials of the atom types. pairs: the words of each type. wall: the
-    words of the wall; None: none is hit.
+    words of the wall; None: none is hit. columns: of the trajectory.
     """
 
     plan: Plan
@@ -42,6 +42,7 @@ class ImpactDeck:
     pairs: tuple[str, ...]
     wall: str | None
     oblique: bool
+    columns: str = "z vz fz"
     path: str = PATH
     end: str = END
 
@@ -100,19 +101,22 @@ class Lammps(Host):
             pairs=tuple(contact(plan, body, strength) for body, strength in types),
             wall=contact(plan, *types[-1]) if wall else None,
             oblique=x.oblique is not None,
+            columns="z vz fz" if wall or not x.oblique else "x z vx vz fx fz",
         )
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         stored_results(folder).remove(PATH, END)
         wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * plan.n * plan.steps)
         bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
-        z, vz, fz = np.moveaxis(frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
+        path = np.moveaxis(frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
         tangential, spin = None, None
         if plan.experiment.oblique:
-            vx, spins = frames(folder / END, 2, bodies)[-1].T
-            spin = spins[: plan.n]
-            tangential = vx if bodies == plan.n else vx[: plan.n] - vx[plan.n :]
+            tangential, spin = frames(folder / END, 2, bodies)[-1].T
         (folder / PATH).unlink()  # large
+        if spin is not None and bodies > plan.n:
+            place, velocity, force = path.reshape(3, 2, *path.shape[1:])
+            return oblique_pairs(plan, place, velocity, force, spin[: plan.n], {"total": wall})
+        z, vz, fz = path
         overlap, velocity = approach(plan, z, vz)
         return Trajectory(plan.time_step, overlap, fz[:, : plan.n].T, velocity, {"total": wall}, tangential, spin)
 

@@ -17,7 +17,7 @@ from ...base import rendering as decks
 from ...base.declarations import declarations, library_path
 from ...base.processes import call, captured_output
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Trajectory, check_features
+from ...impacts.engine import Trajectory, check_features, oblique_pairs
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan, approach, side_by_side
 from ...jobs.engine import Feature, Report
@@ -45,7 +45,7 @@ class Anvil:
 class ImpactDeck:
     """Values of the template of impacts. rigid: whether the target is. wall_material: None: no wall is hit.
 
-    samples: one more than the plan has, for a velocity is the mean of those half a step away.
+    samples: one more than the plan has, for a velocity is the mean of those half a step away. axes: of the trajectory.
     """
 
     plan: Plan
@@ -58,6 +58,7 @@ class ImpactDeck:
     oblique: bool
     skin: float
     samples: int
+    axes: tuple[int, ...] = (2,)
     path: str = "path.bin"
 
 
@@ -183,6 +184,7 @@ class Yade(Host):
             wall_material=x.target.material if wall else None,
             bodies=tuple(bodies),
             oblique=x.oblique is not None,
+            axes=_axes(plan),
             skin=0.1 * min(x.body.radius, x.target.radius),
             samples=plan.steps + 2,
         )
@@ -230,10 +232,15 @@ def body_tables(plan: Plan) -> list[np.ndarray]:
     return tables
 
 
+def _axes(plan: Plan) -> tuple[int, ...]:
+    """Along z, and along x between spheres that meet obliquely."""
+    return (0, 2) if plan.experiment.oblique and not isinf(plan.experiment.target.radius) else (2,)
+
+
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
-    n = plan.n
-    expected = (plan.steps + 2, 3, n if isinf(plan.experiment.target.radius) else 2 * n)
+    n, axes = plan.n, len(_axes(plan))
+    expected = (plan.steps + 2, 3 * axes, n if isinf(plan.experiment.target.radius) else 2 * n)
     tangential = spin = None
     try:
         with path.open("rb") as file:
@@ -244,10 +251,12 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
             raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
     except (OSError, ValueError) as error:
         raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
-    overlap, velocity = approach(plan, samples[:-1, 0], 0.5 * (samples[:-1, 1] + samples[1:, 1]))
-    if tangential is not None and spin is not None:
-        tangential, spin = tangential[:n] - (tangential[n:] if len(tangential) > n else 0.0), spin[:n]
-    return Trajectory(plan.time_step, overlap, samples[:-1, 2, :n].T, velocity, seconds, tangential, spin)
+    place, before, force = np.moveaxis(samples, 1, 0).reshape(3, axes, *samples.shape[::2])
+    place, force, velocity = place[:, :-1], force[:, :-1], 0.5 * (before[:, :-1] + before[:, 1:])
+    if axes > 1 and spin is not None:
+        return oblique_pairs(plan, place, velocity, force, spin[:n], seconds)
+    overlap, speed = approach(plan, place[0], velocity[0])
+    return Trajectory(plan.time_step, overlap, force[0, :, :n].T, speed, seconds, tangential, spin)
 
 
 def stepping_seconds(log: Path) -> float:
