@@ -20,7 +20,7 @@ from epdem.impacts.experiment import experiment
 from epdem.studies.sweep import points
 from epdem.studies.sweep.folder import Sweep
 from epdem.studies.sweep.points import assign, keys_of
-from epdem.studies.sweep.run import plan
+from epdem.studies.sweep.run import check, plan
 
 CASES = Path(__file__).parents[2] / "cases"
 STEEL = CASES / "steel_wall.toml"
@@ -155,6 +155,16 @@ def test_a_point_has_the_exponent_or_the_index_that_it_sets():
         cases = [parse(sweep.data(n), "x") for n in (1, 2)]
         assert [experiment(c).law.parameters["hardening_exponent"] for c in cases] == pytest.approx([0.2, 0.4])
         assert [parse(tomlkit.parse(sweep.text(n)).unwrap(), "x") for n in (1, 2)] == cases
+
+
+def test_a_sweep_of_laws_has_the_keys_of_the_laws_that_it_chooses(tmp_path):
+    sets = {"law.meyer_index": "2.2,2.4", "law.name": "meyer"}
+    sweep = plan(tomlkit.dumps(law_with("thornton")), sets, engines=["embedded"])
+    exponents = [experiment(parse(sweep.data(n), "x")).law.parameters["hardening_exponent"] for n in (1, 2)]
+    assert exponents == pytest.approx([0.2, 0.4]) and sweep.units == {"law.meyer_index": "1", "law.name": None}
+    (tmp_path / "points.csv").write_text("law.name,law.hardening_exponent\nmeyer,0.1\nthornton,0.1\n")
+    both = plan(tomlkit.dumps(law_with("thornton")), {}, engines=["embedded"], table=tmp_path / "points.csv")
+    assert check(both, 1) is None and "law.hardening_exponent" in str(check(both, 2))
 
 
 def test_a_grid_is_every_combination_in_order():

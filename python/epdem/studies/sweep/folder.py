@@ -61,7 +61,7 @@ class Sweep:
     @cached_property
     def units(self) -> dict[str, str | None]:
         """The SI unit of each key that the points set; None for a key that is no quantity."""
-        keys = keys_of(self.tables)
+        keys = keys_of(self.data(1))
         return {name: keys[name].unit for point in self.points[:1] for name in point}
 
     @property

@@ -14,6 +14,7 @@ from typing import Any
 
 import pandas as pd
 
+from ...base.declarations import declarations
 from ...base.files import claim
 from ...case import impact, scene
 from ...case.scene import is_scene
@@ -188,6 +189,9 @@ def plan(
     text, folder = (text_for_anywhere(case), case.parent) if isinstance(case, Path) else (case, Path())
     data = tomllib.loads(text)
     keys, scene = keys_of(data), is_scene(data)
+    if table or "law.name" in settings:  # which laws the points choose, each of them says when it is read
+        for law in declarations():
+            keys = keys_of(data | {"law": {"name": law}}) | keys
     if ranks < 1:
         raise CaseError(f"ranks = {ranks}: must be at least 1")
     axes = points.axes(settings, keys)
