@@ -16,8 +16,9 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.scenes import report, stages
+from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
-from epdem.studies.pages import scene_sentences
+from epdem.studies.pages import scene_page, scene_sentences
 
 SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
 PRESSURES = [10e6, 40e6]
@@ -94,20 +95,39 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
 @pytest.mark.liggghts
 def test_the_page_has_density_over_pressure_and_heckels_line_through_the_stages(pressed):
     (chart,) = report.key(pressed.plan, pressed.results.tables)
-    density, heckel = chart.panels
+    density, heckel, springback = chart.panels
     ends = pressed.results.tables["stages"]
     assert np.asarray(density.series[1].y) == pytest.approx(ends["relative_density"].to_numpy())
     line = heckel.series[1]
     one, two = ends[ends["phase"].isin(["stage1", "stage2"])].to_dict("records")
     slope = (math.log(one["porosity"]) - math.log(two["porosity"])) / (two["pressure"] - one["pressure"])
     assert line.name == f"Heckel, 1/slope = {1 / slope:.3g} Pa"
+    rows = pressed.results.rows.set_index("step")
+    for curve, name in zip(springback.series, ("release1", "release2"), strict=True):
+        at = int(ends.index[ends["phase"] == name][0])
+        way = np.arange(1, len(curve.y) + 1) - 0.5  # the middles of rows, from the height of the end of loading
+        strain = 0.5 * way * pressed.plan.every * pressed.plan.time_step / ends["height"][at - 1]
+        assert curve.name == name and np.asarray(curve.y) == pytest.approx(strain, rel=1e-6)
+        assert np.asarray(curve.x) == pytest.approx(rows["pressure"].loc[: ends["step"][at]].to_numpy()[-len(way) :])
+
+
+@pytest.mark.liggghts
+def test_rows_have_height_and_density_and_the_page_the_table_of_stages(pressed):
+    p, rows = pressed.plan, pressed.results.rows
+    last = rows[rows["step"] <= p.phases[0].end].iloc[-1]  # 3 m/s, half a row before its end
+    height = HEIGHT - 3.0 * p.time_step * (last["step"] - 0.5 * p.every)
+    assert last["height"] == pytest.approx(height, rel=1e-9) and units(rows)["height"] == "m"
+    volume = COUNT * 4 / 3 * math.pi * RADIUS**3
+    assert last["relative_density"] == pytest.approx(volume / (SIDE**2 * height), rel=1e-9)
+    (part,) = [part for part in scene_page(pressed).parts if getattr(part, "title", "") == "Stages"]
+    assert part.frame is pressed.results.tables["stages"] and "the force of an ejection is no result" in part.note
 
 
 @pytest.mark.liggghts
 def test_measured_densities_stand_beside_those_of_the_first_load(pressed):
     p, tables = pressed.plan, pressed.results.tables
     (line,) = stages.against_measured(p, tables)
-    rows, density = tables["rows"]["pressure"].to_numpy(), stages.densities(p, tables)
+    rows, density = (tables["rows"][name].to_numpy() for name in ("pressure", "relative_density"))
     differences = []
     for pressure, value in ((15e6, 0.6), (39e6, 0.75)):
         after = int(np.flatnonzero(rows >= pressure)[0])

@@ -83,7 +83,7 @@ COLUMNS = {
     # stages of a press
     "pressure": Quantity("Pa", "pressure on the punch, mean of the last row of the phase"),
     "opposite_pressure": Quantity("Pa", "pressure on the plane that it presses against, likewise"),
-    "height": Quantity("m", "height of the bed at the end of the phase"),
+    "height": Quantity("m", "height of the bed at the end of the phase, in rows in the middle of the row"),
     "relative_density": Quantity("", "volume of the spheres over that of the bed"),
     "porosity": Quantity("", "1 less the relative density"),
     "springback": Quantity("", "axial strain since the end of the last phase of loading"),

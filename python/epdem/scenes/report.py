@@ -178,12 +178,16 @@ def _unloading(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(Axis(f"displacement of the {row.wall}", "m"), Axis(press.force, "N"), series)]
 
 
+def _pressure(p: ScenePlan, tables: Tables) -> np.ndarray:
+    return tables["rows"][p.scene.stages.pressure].to_numpy()  # type: ignore[union-attr]
+
+
 def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Relative density against pressure, and the ends of the phases."""
-    pressure, density = tables["rows"][p.scene.stages.pressure], stages.densities(p, tables)  # type: ignore[union-attr]
+    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
     ends = tables["stages"]
     series = [
-        Series("punch", pressure.to_numpy(), density, 0),
+        Series("punch", pressure, density, 0),
         Series("ends of phases", ends["pressure"].to_numpy(), ends["relative_density"].to_numpy(), INK, None, 0),
     ]
     if known := p.case.measured:
@@ -197,9 +201,9 @@ def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
 
     Heckel 1961, Trans. Metall. Soc. AIME 221, 671; the slope is the inverse of an apparent yield pressure.
     """
-    pressure, density = tables["rows"][p.scene.stages.pressure], stages.densities(p, tables)  # type: ignore[union-attr]
-    rising = ((pressure >= pressure.cummax()) & (pressure > 0.0)).to_numpy() & (density < 1.0)
-    series = [Series("punch", pressure.to_numpy()[rising], -np.log(1.0 - density[rising]), 0)]
+    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
+    rising = (pressure >= np.maximum.accumulate(pressure)) & (pressure > 0.0) & (density < 1.0)
+    series = [Series("punch", pressure[rising], -np.log(1.0 - density[rising]), 0)]
     ends = stages.loaded(p, tables["stages"])
     if len(ends) > 1:
         x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].clip(lower=1e-3).to_numpy())
@@ -207,6 +211,18 @@ def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
         name = f"Heckel, 1/slope = {1.0 / slope:.3g} Pa"
         series.append(Series(name, x, begin + slope * x, INK, "dash"))
     return [Panel(Axis("pressure", "Pa"), Axis("ln 1/(1 - relative density)"), series)]
+
+
+def _springback(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """Axial strain since the end of loading against pressure, a curve for each release."""
+    rows, ends, pressure = tables["rows"], tables["stages"], _pressure(p, tables)
+    loaded = ends["height"].where(ends["springback"].isna()).ffill()
+    series = []
+    for n in np.flatnonzero(ends["springback"].notna()):
+        during = rows["step"].between(ends["step"][n - 1], ends["step"][n], inclusive="right")
+        strain = rows["height"][during] / loaded[n] - 1.0
+        series.append(Series(ends["phase"][n], pressure[during], strain.to_numpy(), len(series) % len(PALETTE)))
+    return [Panel(Axis("pressure", "Pa"), Axis("springback"), series)] if series else []
 
 
 def _column(p: ScenePlan, tables: Tables, name: str) -> list[Panel]:
@@ -278,6 +294,7 @@ OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
     "unloading": _unloading,
     "densification": _densification,
     "heckel": _heckel,
+    "springback": _springback,
 }
 OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
     "mass_flow": _mass_flow,

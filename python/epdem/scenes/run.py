@@ -191,6 +191,7 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
         tables["energy_balance"] = checks.energy_balance(p, tables)
     tables["checks"] = checks.checks(p, tables)
     if p.scene.stages:
+        tables["rows"] = stages.with_densities(p, tables)
         tables["stages"] = stages.table(p, tables)
     if p.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])

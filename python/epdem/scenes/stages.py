@@ -48,12 +48,12 @@ def volume(p: ScenePlan, tables: Tables) -> float:
     return next(bed.solid_height * bed.area for bed in p.beds)
 
 
-def densities(p: ScenePlan, tables: Tables) -> np.ndarray:
-    """Relative density of the bed in the middle of each row."""
-    stages = p.scene.stages
+def with_densities(p: ScenePlan, tables: Tables) -> pd.DataFrame:
+    """The rows with height and relative density of the bed in the middle of each row."""
+    stages, rows = p.scene.stages, tables["rows"]
     assert stages is not None
-    middle = p.time_at((tables["rows"]["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
-    return volume(p, tables) / (stages.area * heights(p, stages, middle))
+    height = heights(p, stages, p.time_at((rows["step"] - 0.5 * p.every).clip(lower=0).to_numpy()))
+    return rows.assign(height=height, relative_density=volume(p, tables) / (stages.area * height))
 
 
 def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
@@ -106,7 +106,7 @@ def against_measured(p: ScenePlan, tables: Tables) -> list[str]:
     known, declared = p.case.measured, p.scene.stages
     if known is None or declared is None:
         return []
-    pressure, density = tables["rows"][declared.pressure].to_numpy(), densities(p, tables)
+    pressure, density = (tables["rows"][name].to_numpy() for name in (declared.pressure, "relative_density"))
     if not (pressure > 0.0).any():
         return []
     rising = (pressure > 0.0) & (pressure > np.maximum.accumulate(np.append(-math.inf, pressure[:-1])))

@@ -14,6 +14,10 @@ SMALL_DEFORMATION = 0.3  # strain w a_max/R* above which results are flagged eve
 # there: 0.62 [(v/v_y0)/(E*/Y)]^(-1/2), the finite-strain branch of Wu et al. 2003, a sphere and a rigid plane (w = 1);
 # the ratio does not depend on Y
 FINITE_STRAIN = {0.2: 0, SMALL_DEFORMATION: 23}
+OVERESTIMATED = (
+    f"small-strain theory overestimates e_n, by {FINITE_STRAIN[SMALL_DEFORMATION]} % at {SMALL_DEFORMATION} (cavity "
+    "against Wu et al. 2003), more beyond"
+)
 
 
 def caveats(law: Law, *, m_star: float, speed: Real) -> list[str]:
@@ -21,18 +25,18 @@ def caveats(law: Law, *, m_star: float, speed: Real) -> list[str]:
     return law.caveats(m_star=m_star, speed=np.ravel(number("speed", speed)))
 
 
-def finite_strain(largest: float, where: str = "") -> list[str]:
+def finite_strain(largest: float, where: str = "", effect: str = OVERESTIMATED) -> list[str]:
     """A sentence for the highest limit that the largest strain w a/R* of contacts exceeds; none below all limits.
 
-    w: share of the weaker body (`pair.strain_share`). `where`: which part of the results is above the limit, in words.
+    w: share of the weaker body (`pair.strain_share`). `where`: which part of the results is above the limit;
+    `effect`: what follows from it, in words.
     """
     limit = max((limit for limit in FINITE_STRAIN if largest > limit), default=None)
     if limit is None:
         return []
     return [
         f"the strain w a/R* (w: share of the weaker body, 1/2 of like bodies, 1 beside a rigid one) reaches "
-        f"{largest:.2f}, above {limit}{where}: small-strain theory overestimates e_n, by "
-        f"{FINITE_STRAIN[SMALL_DEFORMATION]} % at {SMALL_DEFORMATION} (cavity against Wu et al. 2003), more beyond"
+        f"{largest:.2f}, above {limit}{where}: {effect}"
     ]
 
 
