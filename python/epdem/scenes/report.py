@@ -179,7 +179,7 @@ def _unloading(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 
 def _pressure(p: ScenePlan, tables: Tables) -> np.ndarray:
-    return tables["rows"][p.scene.stages.pressure].to_numpy()  # type: ignore[union-attr]
+    return np.asarray(tables["rows"][p.scene.stages.pressure])  # type: ignore[union-attr]
 
 
 def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
@@ -217,7 +217,7 @@ def _springback(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Axial strain since the end of loading against pressure, a curve for each release."""
     rows, ends, pressure = tables["rows"], tables["stages"], _pressure(p, tables)
     loaded = ends["height"].where(ends["springback"].isna()).ffill()
-    series = []
+    series: list[Series] = []
     for n in np.flatnonzero(ends["springback"].notna()):
         during = rows["step"].between(ends["step"][n - 1], ends["step"][n], inclusive="right")
         strain = rows["height"][during] / loaded[n] - 1.0
