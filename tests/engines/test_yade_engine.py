@@ -218,7 +218,7 @@ def test_an_error_inside_a_step_is_an_error_of_the_run(tmp_path):
     tool = engine("yade")
     tool.write(p, tmp_path)
     deck = tmp_path / "impact.py"
-    deck.write_text(deck.read_text().replace("    now[0] =", "    assert O.iter < 9, 'planted'\n    now[0] ="))
+    deck.write_text(deck.read_text().replace("    now[0][0] =", "    assert O.iter < 9, 'planted'\n    now[0][0] ="))
     with pytest.raises(EngineError, match="planted"):
         tool.run(p, tmp_path)
     assert not (tmp_path / "path.bin").exists()

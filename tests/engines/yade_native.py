@@ -108,13 +108,15 @@ for rows, radius, material in zip(groups, job["radii"], (body, target)):
             b.state.angVel = (0, row[5], 0)
         moving.append(O.bodies.append(b))
 states = [O.bodies[k].state for k in moving]
-samples = np.empty((job["samples"], 3, len(moving)))
+axes = (0, 2) if job["oblique"] and len(groups) > 1 else (2,)
+samples = np.empty((job["samples"], 3, len(axes), len(moving)))
 
 def record():
     now = samples[O.iter]
-    now[0] = [s.pos[2] for s in states]
-    now[1] = [s.vel[2] for s in states]
-    now[2] = [O.forces.f(k)[2] for k in moving]
+    for n, axis in enumerate(axes):
+        now[0][n] = [s.pos[axis] for s in states]
+        now[1][n] = [s.vel[axis] for s in states]
+        now[2][n] = [O.forces.f(k)[axis] for k in moving]
 
 O.dt = job["dt"]
 ip2 = Ip2_EpMat_EpMat_EpPhys(**{k: MatchMaker(algo="val", val=v) for k, v in job["pair"].items()})

@@ -240,7 +240,7 @@ def _axes(plan: Plan) -> tuple[int, ...]:
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
     n, axes = plan.n, len(_axes(plan))
-    expected = (plan.steps + 2, 3 * axes, n if isinf(plan.experiment.target.radius) else 2 * n)
+    expected = (plan.steps + 2, 3, axes, n if isinf(plan.experiment.target.radius) else 2 * n)
     tangential = spin = None
     try:
         with path.open("rb") as file:
@@ -251,7 +251,7 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
             raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
     except (OSError, ValueError) as error:
         raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
-    place, before, force = np.moveaxis(samples, 1, 0).reshape(3, axes, *samples.shape[::2])
+    place, before, force = np.moveaxis(samples, 0, 2)
     place, force, velocity = place[:, :-1], force[:, :-1], 0.5 * (before[:, :-1] + before[:, 1:])
     if axes > 1 and spin is not None:
         return oblique_pairs(plan, place, velocity, force, spin[:n], seconds)
