@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "comm.h"
 #include "reader.hpp"
+#include "simulation.hpp"
 
 namespace epdem::liggghts {
 
@@ -15,9 +15,7 @@ void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const std::string& model, int widt
       const std::string text = "model " + model + ": cohesionEnergyDensity = " + number(pull) + " of " + both(i, j) +
                                " pulls contacts in harder than they resist: above " + number(most) +
                                " the spheres collapse";
-      static std::string said;
-      if (lmp->comm->me == 0 && text != said) lmp->error->warning(FLERR, text.c_str());
-      said = text;
+      if (Simulation::of(lmp).is_new(text) && lmp->comm->me == 0) lmp->error->warning(FLERR, text.c_str());
       return;
     }
 }

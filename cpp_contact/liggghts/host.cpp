@@ -57,30 +57,17 @@ void refuse_library(LAMMPS_NS::LAMMPS*) {}
 
 #endif
 
-/// The simulation of the last call.
-struct Simulation {
-  LAMMPS_NS::LAMMPS* lmp = nullptr;
-  bool matches = false, models_named = false;
-};
-
-Simulation& simulation(LAMMPS_NS::LAMMPS* lmp) {
-  static Simulation last;
-  if (last.lmp != lmp) last = {lmp, compare_library(lmp), false};
-  return last;
-}
-
 }  // namespace
 
-bool library_matches(LAMMPS_NS::LAMMPS* lmp) { return simulation(lmp).matches; }
+bool library_matches(LAMMPS_NS::LAMMPS* lmp) {
+  static const bool matches = compare_library(lmp);  // a program has one library
+  return matches;
+}
 
 void check_host(LAMMPS_NS::LAMMPS* lmp) {
-  Simulation& now = simulation(lmp);
-  if (now.models_named) return;
-  now.models_named = true;
   // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  if (!now.matches) refuse_library(lmp);
-  say(lmp, "epdem " EPDEM_VERSION ":" + model_names());
+  if (!library_matches(lmp)) refuse_library(lmp);
 }
 
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp) {

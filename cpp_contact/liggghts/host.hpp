@@ -46,7 +46,7 @@ inline void say(const LAMMPS_NS::LAMMPS* lmp, const std::string& line) {
 /// Whether the library in use is the one that the headers describe: its members may be read.
 bool library_matches(LAMMPS_NS::LAMMPS* lmp);
 
-/// Ends the run if the library in use is another one; names the models once.
+/// Ends the run if the library in use is another one.
 void check_host(LAMMPS_NS::LAMMPS* lmp);
 
 }  // namespace epdem::liggghts

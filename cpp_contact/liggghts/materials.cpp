@@ -2,14 +2,13 @@
 #include "materials.hpp"
 
 #include <memory>
-#include <set>
 
 #include "adhesion.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "force.h"
 #include "global_properties.h"
-#include "host.hpp"
+#include "simulation.hpp"
 #include "update.h"
 
 namespace epdem::liggghts {
@@ -165,12 +164,6 @@ std::vector<double> viscous_numbers(const Reader& reader) {
   return of_restitution(reader, viscous_number, {viscous_restitution_min, 1.0, true, true},
                         "viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts "
                         "that do not yield");
-}
-
-/// Prints a line once in the life of the program, although every pair style, wall and run reads the materials.
-void say_once(LAMMPS_NS::LAMMPS* lmp, const std::string& line) {
-  static std::set<std::string> said;
-  if (said.insert(line).second) say(lmp, line);
 }
 
 /// Names the first pair of types whose strength lies so high above the modulus that the contact does not yield.

@@ -6,6 +6,7 @@
 
 #include "epdem/sub_models.hpp"
 #include "normal.hpp"
+#include "simulation.hpp"
 
 namespace epdem::liggghts {
 
@@ -96,11 +97,8 @@ class Model : public ContactModelBase {
         cohesion_({lmp, setup, this, ids_}),
         tangential_(Site{lmp, setup, this, ids_, &normal_->state()}),
         rolling_({lmp, setup, this, ids_}) {
-    latest = this;
+    if (!is_wall) say_once(lmp, "epdem " EPDEM_VERSION ":" + model_names());
   }
-
-  /// LIGGGHTS's loops keep their model to themselves; ours ask for the one that was built with them.
-  static inline Model* latest = nullptr;
 
   /// Settings of LIGGGHTS's models that our loops must know.
   struct LoopSettings {
@@ -247,5 +245,9 @@ class Model : public ContactModelBase {
   Chosen<TangentialModelBase, tangential_model> tangential_;
   Chosen<RollingModelBase, rolling_model> rolling_;
 };
+
+/// The model of a pair style or of a wall, a private member of LIGGGHTS's class.
+Model& model_of(LIGGGHTS::PairStyles::Granular<Model>& style);
+Model& model_of(LIGGGHTS::Walls::Granular<Model>& style);
 
 }  // namespace epdem::liggghts

@@ -134,6 +134,14 @@ std::shared_ptr<RollingModelBase> rolling_model(const Site& s) {
   return found;
 }
 
+/// An explicit instantiation may name a private member.
+template <class Style, Model Style::* model>
+struct Exposed {
+  friend Model& model_of(Style& style) { return style.*model; }
+};
+template struct Exposed<PairStyles::Granular<Model>, &PairStyles::Granular<Model>::cmodel>;
+template struct Exposed<Walls::Granular<Model>, &Walls::Granular<Model>::cmodel>;
+
 namespace {
 
 PairStyles::IGranularPairStyle* new_pair(LAMMPS* lmp, PairGran* parent, int64_t hash) {

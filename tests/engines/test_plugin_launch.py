@@ -86,6 +86,11 @@ def test_under_mpirun_the_line_comes_once(tmp_path):
     assert text.count("epdem ") == 1
 
 
+def test_each_simulation_of_a_program_names_the_models(tmp_path):
+    text = started(tmp_path, deck() + "clear\n" + deck()).text
+    assert text.count("epdem ") == 2 and text.count("Loop time") == 2
+
+
 def test_the_library_can_be_preloaded_into_an_unmodified_liggghts(tmp_path):
     text = started(tmp_path, deck(), command="liggghts", preload=library()).text
     assert text.count("epdem ") == 1 and "Loop time" in text

@@ -104,6 +104,15 @@ def test_both_loops_over_triangles_give_the_same_bits(tmp_path, law, tangential,
         assert max(np.sum(a & ~b) for a, b in zip(touching, touching[1:], strict=False)) > 3
 
 
+def test_a_simulation_after_another_in_one_program_has_the_bits_of_one_alone(tmp_path):
+    text = deck("thornton", "history", "moving", steps=1000)
+    before = deck("cavity", "off", "shaken", steps=700)
+    before = before.replace("out.bin", "before.bin").replace("walls.txt", "before.txt")
+    alone, walls = outcome(tmp_path / "alone", text)
+    after, walls_after = outcome(tmp_path / "after", before + "clear\n" + text)
+    assert len(after) == 21 and np.array_equal(after, alone) and walls_after == walls
+
+
 def test_a_restart_goes_on_with_the_other_loop_over_triangles(tmp_path):
     ends = []
     for first in ("", "generic"):

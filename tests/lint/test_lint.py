@@ -75,6 +75,49 @@ def test_adapters_leave_powers_and_roots_to_the_laws():
         assert not re.search(r"\b(sqrt|pow|exp|log|cbrt)\s*\(", path.read_text()), path
 
 
+# state outside of objects: variables of a namespace, of a class or of a function, and maps from addresses
+STATE = (
+    r"^(?!using|namespace|class|struct|enum|return|extern|template|typedef|friend|const|inline const)"
+    r"(?:[\w:<>,*&]+ )+[*&]*\w+(?:\[\])?(?: = [^;]*|\{[^;]*\})?;",
+    r"^ *(?:inline )?(?:static|thread_local) (?!const|inline const)[\w:<>,*& ]+ [*&]*\w+(?:\[\w*\])?(?: =|;|\{)",
+    r"map<(?:const )?[\w:]+ ?\*",
+)
+
+
+def state_of(text):
+    """Declarations of state outside of objects, without comments."""
+    text = re.sub(r"//.*", "", text)
+    return [found.strip() for pattern in STATE for found in re.findall(pattern, text, re.MULTILINE)]
+
+
+def test_state_belongs_to_objects():
+    """A simulation ends, and another one begins in the same program, at the same address."""
+    rooms = [ROOT / "cpp_contact" / room for room in ("include", "kernels", "liggghts", "lammps")]
+    for path in [path for room in rooms for path in sorted(room.rglob("*.[hc]pp"))]:
+        assert state_of(path.read_text()) == [], path
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Bins bins;  // as LIGGGHTS filled its bins last",
+        "bool deletes = false;",
+        "long mesh_searches = 0;",
+        "std::vector<double*> rows{};",
+        "  static Simulation last;",
+        "  static std::vector<int> all;",
+        "  static loop::NearTest test;  // of all triangles",
+        "  static LAMMPS* known = nullptr;",
+        "  static std::atomic<bool> waits{false};",
+        "  static inline Model* latest = nullptr;",
+        "  static double single[9];",
+        "std::map<FixWallGran*, MeshState> kept() {",
+    ],
+)
+def test_the_test_of_state_finds(line):
+    assert state_of(line)
+
+
 def test_a_recipe_of_easybuild_is_python_with_its_keys():
     for path in (ROOT / "packaging/easybuild").glob("*.eb"):
         given: dict[str, object] = {}

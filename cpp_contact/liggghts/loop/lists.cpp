@@ -7,26 +7,15 @@
 
 #include "fix_contact_history.h"
 #include "fix_neighlist_mesh.h"
-#include "loop.hpp"
-#include "near.hpp"
 #include "neigh_list.h"
 #include "replaced.hpp"
+#include "state.hpp"
+#include "triangles.hpp"
 
 #ifdef EPDEM_BUILT_FOR
 
 namespace epdem::liggghts::loop {
 namespace {
-
-/// The spheres of LIGGGHTS's bins side by side in memory, in the order of its linked lists.
-struct Bins {
-  std::vector<int> start;    // of each bin in `members`, and the end
-  std::vector<int> members;  // eight more can be read
-  std::vector<int> bin_of;   // of each sphere
-
-  void fill(const int* head, const int* next, int count, int spheres);
-};
-
-Bins bins;  // as LIGGGHTS filled its bins last
 
 /// Whether n bins that begin with these spheres are empty: no loop that ends early, so that it becomes vectors.
 template <int n>
@@ -35,6 +24,8 @@ bool empty(const int* head) {
   for (int b = 0; b < n; ++b) all &= head[b];
   return all == -1;
 }
+
+}  // namespace
 
 void Bins::fill(const int* head, const int* next, int count, int spheres) {
   start.resize(count + 1);
@@ -57,6 +48,8 @@ void Bins::fill(const int* head, const int* next, int count, int spheres) {
   start[count] = n;
 }
 
+namespace {
+
 /// Bins that follow one another in memory, as distances from the bin of a sphere.
 struct Row {
   int first, last;
@@ -74,16 +67,19 @@ std::vector<Row> rows_of(const LAMMPS_NS::NeighList& list) {
   return rows;
 }
 
-/// Whether LIGGGHTS's own functions search.
-bool searches_itself(LAMMPS_NS::LAMMPS* lmp) {
-  return generic_loop() || !library_matches(lmp) || lmp->atom->nlocal == 0 || !lmp->atom->radius;
+/// The state for a search of ours; nullptr: LIGGGHTS's own functions search.
+LoopState* searching_loops(LAMMPS_NS::LAMMPS* lmp) {
+  return lmp->atom->nlocal > 0 && lmp->atom->radius ? active_loops(lmp) : nullptr;
 }
 
 /// The spheres of some bins, one bin after the other.
 struct Candidates {
-  const int *const start = bins.start.data(), *const members = bins.members.data();
-  int* const spheres = room();  // eight more can be read
+  const int *const start, *const members;
+  int* const spheres;  // eight more can be read
   int n = 0;
+
+  explicit Candidates(LoopState& loops)
+      : start(loops.bins.start.data()), members(loops.bins.members.data()), spheres(room(loops)) {}
 
   void add(int first, int last) {
     const int begin = start[first], count = start[last + 1] - begin;
@@ -94,19 +90,14 @@ struct Candidates {
   }
 
  private:
-  static int* room() {
-    static std::vector<int> all;
-    if (all.size() < bins.members.size()) all.resize(bins.members.size());
-    return all.data();
+  static int* room(LoopState& loops) {
+    if (loops.candidates.size() < loops.bins.members.size()) loops.candidates.resize(loops.bins.members.size());
+    return loops.candidates.data();
   }
 };
 
-}  // namespace
-
-long mesh_searches = 0;
-
-NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double skin) {
-  static std::vector<double> spheres;
+/// Notes where the spheres are.
+void note_spheres(std::vector<double>& spheres, const LAMMPS_NS::Atom& atom) {
   const int n = atom.nlocal + atom.nghost;
   spheres.resize(4 * static_cast<std::size_t>(n));
   const double *const x = atom.x[0], *const radius = atom.radius;
@@ -115,9 +106,17 @@ NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double skin) {
     for (int k = 0; k < 3; ++k) row[k] = x[3 * i + k];
     row[3] = radius[i];
   }
-  return {spheres.data(), factor, skin};
 }
 
+/// A search for the neighbours of a mesh begins.
+void note_search(LAMMPS_NS::LAMMPS* lmp) {
+  if (!library_matches(lmp)) return;
+  LoopState& loops = state_of(lmp);
+  ++loops.mesh_searches;
+  if (searching_loops(lmp)) note_spheres(loops.spheres, *lmp->atom);
+}
+
+}  // namespace
 }  // namespace epdem::liggghts::loop
 
 namespace LAMMPS_NS {
@@ -127,16 +126,18 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void Neighbor::bin_atoms() {
   static const auto original = loop::next<Neighbor*>("_ZN9LAMMPS_NS8Neighbor9bin_atomsEv");
   original(this);
-  if (!loop::generic_loop() && epdem::liggghts::library_matches(lmp))
-    loop::bins.fill(binhead, bins, mbins, atom->nlocal + atom->nghost);
+  if (!epdem::liggghts::library_matches(lmp)) return;
+  loop::LoopState& loops = loop::state_of(lmp);  // the first call of a run
+  if (!loops.generic) loops.bins.fill(binhead, bins, mbins, atom->nlocal + atom->nghost);
 }
 
 [[gnu::visibility("default")]] int Neighbor::check_distance() {
   static const auto original =
       reinterpret_cast<int (*)(Neighbor*)>(dlsym(RTLD_NEXT, "_ZN9LAMMPS_NS8Neighbor14check_distanceEv"));
-  if (loop::searches_itself(lmp) || boxcheck || atom->radvary_flag) return original(this);
+  const loop::LoopState* const loops = loop::searching_loops(lmp);
+  if (!loops || boxcheck || atom->radvary_flag) return original(this);
   const int n = includegroup ? atom->nfirst : atom->nlocal;
-  const int here = loop::sphere_kernels(lmp).any_moved(atom->x[0], xhold[0], n, triggersq);
+  const int here = loops->kernels.spheres.any_moved(atom->x[0], xhold[0], n, triggersq);
   int anywhere = here;
   MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);  // as the other ranks do, by whichever function
   if (anywhere && ago == std::max(every, delay)) ++ndanger;
@@ -146,12 +147,14 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void Neighbor::granular_bin_no_newton(NeighList* list) {
   static const auto original =
       loop::next<Neighbor*, NeighList*>("_ZN9LAMMPS_NS8Neighbor22granular_bin_no_newtonEPNS_9NeighListE");
-  if (loop::searches_itself(lmp) || exclude) return original(this, list);
+  loop::LoopState* const loops = loop::searching_loops(lmp);
+  if (!loops || exclude) return original(this, list);
   bin_atoms();
   const std::vector<loop::Row> rows = loop::rows_of(*list);
-  const loop::NearTest test = loop::near_test(*atom, contactDistanceFactor, skin);
-  const auto near = loop::sphere_kernels(lmp).near_sphere;
-  loop::Candidates found;
+  loop::note_spheres(loops->spheres, *atom);
+  const loop::NearTest test{loops->spheres.data(), contactDistanceFactor, skin};
+  const auto near = loops->kernels.spheres.near_sphere;
+  loop::Candidates found(*loops);
 
   FixContactHistory* const history = list->fix_history;
   NeighList* const contacts = history ? list->listgranhistory : nullptr;
@@ -164,7 +167,7 @@ namespace loop = epdem::liggghts::loop;
   const double* const radius = atom->radius;
   const int count = includegroup ? atom->nfirst : atom->nlocal, values = contacts ? contacts->dnum : 0;
   for (int i = 0; i < count; ++i) {
-    const int bin = loop::bins.bin_of[i];
+    const int bin = loops->bins.bin_of[i];
     found.n = 0;
     for (const loop::Row& row : rows) found.add(bin + row.first, bin + row.last);
     const int n = near(test, i, found.spheres, found.n, found.spheres);
@@ -200,13 +203,26 @@ namespace loop = epdem::liggghts::loop;
   list->inum = count;
 }
 
+[[gnu::visibility("default")]] void FixNeighlistMesh::pre_force(int vflag) {
+  static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh9pre_forceEi");
+  if (buildNeighList) loop::note_search(lmp);
+  original(this, vflag);
+}
+
+/// LIGGGHTS's does not call pre_force through the dynamic linker.
+[[gnu::visibility("default")]] void FixNeighlistMesh::setup_pre_force(int vflag) {
+  static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh15setup_pre_forceEi");
+  loop::note_search(lmp);
+  original(this, vflag);
+}
+
 [[gnu::visibility("default")]] void FixNeighlistMesh::handleTriangle(int triangle) {
   static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh14handleTriangleEi");
-  if (triangle == 0) ++loop::mesh_searches;
-  if (loop::searches_itself(lmp) || atom->ellipsoid) return original(this, triangle);
-  loop::Candidates found;
+  loop::LoopState* const loops = loop::searching_loops(lmp);
+  if (!loops || atom->ellipsoid) return original(this, triangle);
+  loop::Candidates found(*loops);
   // LIGGGHTS does not clip a triangle's box in a 2-D simulation, and keeps boxes while the grid gets coarser
-  const auto bins = static_cast<unsigned>(loop::bins.start.size() - 1);
+  const auto bins = static_cast<unsigned>(loops->bins.start.size() - 1);
   const auto add = [&](int bin) {
     if (static_cast<unsigned>(bin) < bins) found.add(bin, bin);
   };
@@ -222,10 +238,9 @@ namespace loop = epdem::liggghts::loop;
   } else {
     for (const int bin : triangles[triangle].bins) add(bin);
   }
-  static loop::NearTest test;  // of all triangles
-  if (triangle == 0) test = loop::near_test(*atom, neighbor->contactDistanceFactor, skin);
+  const loop::NearTest test{loops->spheres.data(), neighbor->contactDistanceFactor, skin};
   const loop::TrianglePlanes planes = loop::Triangles::planes(*mesh_, triangle);
-  const int n = loop::sphere_kernels(lmp).listed_at_triangle(test, planes, found.spheres, found.n, found.spheres);
+  const int n = loops->kernels.spheres.listed_at_triangle(test, planes, found.spheres, found.n, found.spheres);
   std::vector<int>& contacts = triangles[triangle].contacts;
   contacts.clear();
   for (int k = 0; k < n; ++k) {

@@ -15,6 +15,9 @@ namespace epdem::liggghts::loop {
 using namespace LIGGGHTS::ContactModels;
 using LAMMPS_NS::PairGran;
 
+namespace {
+
+/// The kernels of EPDEM_SIMD; ends the run if the processor lacks them or there are none.
 const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp) {
   const char* const named = std::getenv("EPDEM_SIMD");
   const Kernels* const found = kernels_of(named ? named : "");
@@ -27,25 +30,30 @@ const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp) {
   return *found;
 }
 
-const SphereKernels& sphere_kernels(LAMMPS_NS::LAMMPS* lmp) {
-  static const SphereKernels& found = chosen_kernels(lmp).spheres;
-  return found;
-}
+}  // namespace
 
-bool generic_loop() {
-  static const char* const loop = std::getenv("EPDEM_LOOP");
-  return loop && std::strcmp(loop, "generic") == 0;
-}
-
-void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp) {
+bool generic_loop(LAMMPS_NS::LAMMPS* lmp) {
   const char* const loop = std::getenv("EPDEM_LOOP");
-  if (!loop || !*loop || generic_loop()) return;
+  if (!loop || !*loop) return false;
+  if (std::strcmp(loop, "generic") == 0) return true;
   const std::string text = "EPDEM_LOOP = " + std::string(loop) + ": no such loop; leave it unset, or take generic";
   lmp->error->all(FLERR, text.c_str());
+  return true;
+}
+
+LoopState& state_of(LAMMPS_NS::LAMMPS* lmp) {
+  auto& loops = Simulation::of(lmp).loops;
+  if (!loops) loops = std::make_shared<LoopState>(LoopState{generic_loop(lmp), chosen_kernels(lmp)});
+  return *loops;
+}
+
+LoopState* active_loops(LAMMPS_NS::LAMMPS* lmp) {
+  if (!library_matches(lmp)) return nullptr;
+  const Simulation* const known = Simulation::find(lmp);
+  return known && known->loops && !known->loops->generic ? known->loops.get() : nullptr;
 }
 
 const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums) {
-  if (generic_loop()) return "EPDEM_LOOP = generic";
   if (rigid) return "rigid bodies";
   if (!atom.rmass || !atom.sphere_flag || atom.shapetype_flag) return "particles other than spheres";
   if (stores) return "contact forces are stored";
@@ -119,7 +127,7 @@ void PairLoop::read_lists() {
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
   read_lists();
-  const SphereKernels& kernels = sphere_kernels(lmp);
+  const SphereKernels& kernels = *plan.spheres;
   const auto search = [&](double factor) { return pairs_.search(pass_.x, atom->radius, factor); };
   const auto compute_block = [&](int n) { finish<reach>(plan, n); };
   if constexpr (reach == Reach::touching) return each_overlap(kernels, search(1.0), *block_, place_, compute_block);
@@ -139,7 +147,7 @@ void PairLoop::finish(const Plan& plan, int n) {
   if (n == 0) return;
   fetch(plan, n);
   pad(*block_, n);
-  (reach == Reach::grown ? plan.grown : kernel_)(*block_, n, pass_);
+  plan.kernel(*block_, n, pass_);
   if (plan.strain) note_strain(*plan.strain, *block_);
   const bool turns = plan.friction || plan.settings.rolling;
   if (plan.tally)

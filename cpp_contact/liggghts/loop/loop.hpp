@@ -8,23 +8,16 @@
 
 #include "energy_tally.hpp"
 #include "growth.hpp"
-#include "host.hpp"
 #include "kernels/pair_list.hpp"
+#include "state.hpp"
 #include "strain.hpp"
 
 namespace epdem::liggghts::loop {
 
-using namespace epdem::kernels;
-
-/// The kernels of the widest instruction set of this processor, or of EPDEM_SIMD=sse2|avx2|avx512; ends the run if that
-/// is none of them or the processor lacks it.
-const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp);
-
-/// The kernels for motion and search of spheres of the same instruction set.
-const SphereKernels& sphere_kernels(LAMMPS_NS::LAMMPS* lmp);
-
 /// Settings and properties of a run.
 struct Plan {
+  Kernel kernel = nullptr;
+  const SphereKernels* spheres = nullptr;
   int friction = 0;  // place in Frictions
   ContactSettings settings{};
   bool rolls = false;               // rolling friction has a history
@@ -32,17 +25,10 @@ struct Plan {
   EnergyTally* tally = nullptr;     // where plastic work is added, if it is requested
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
   Growth* growth = nullptr;         // of the spheres, with compaction
-  Kernel grown = nullptr;           // and the kernel for it
   int root = -1, last_step = -1;    // with adhesion, places in a history: root > 0 while attached, last evaluation
   int width = 0;                    // number of types + 1
   std::vector<double> constants;    // most_constants for each type of i * width + type of j; see Constant
 };
-
-/// Whether the user chose LIGGGHTS's loops by EPDEM_LOOP=generic.
-bool generic_loop();
-
-/// Ends the run if EPDEM_LOOP is set to anything but generic.
-void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp);
 
 /// Why the atoms of a run, or what it stores of its contacts, keep pairs and walls from our loops; nullptr: nothing.
 const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums);
@@ -61,7 +47,7 @@ enum class Reach { touching, attached, grown };
 
 class PairLoop : protected LAMMPS_NS::Pointers {
  public:
-  PairLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
+  explicit PairLoop(LAMMPS_NS::LAMMPS* lmp) : Pointers(lmp), block_(std::make_unique<Block>()) {}
 
   /// Why this step cannot take this loop; nullptr: it can.
   const char* obstacle(LAMMPS_NS::PairGran* pair, const Plan& plan, int vflag, int addflag) const;
@@ -85,7 +71,6 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void scatter(const Plan& plan, int n);
   void add_friction(EnergyTally& tally, int n);
 
-  const Kernel kernel_;
   const std::unique_ptr<Block> block_;
   int place_[block_size + most_lanes];  // in the list
   PairList pairs_;

@@ -13,8 +13,8 @@
 
 #include "fix_contact_history_mesh.h"
 #include "fix_neighlist_mesh.h"
-#include "near.hpp"
 #include "replaced.hpp"
+#include "triangles.hpp"
 #include "wall.hpp"
 
 #ifdef EPDEM_BUILT_FOR
@@ -37,15 +37,15 @@ struct Lists : FixNeighlistMesh {
 class NearSpheres {
  public:
   /// For a step.
-  void update(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const SphereKernels& kernels,
+  void update(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const LoopState& loops,
               double slack) {
-    const bool left = mesh.sizeLocal() + mesh.sizeGhost() == 0;  // without triangles here there is no search
-    const bool searched = left || search_ != mesh_searches;
+    const bool searched = search_ != loops.mesh_searches;
+    search_ = loops.mesh_searches;
     if (searched) take(mesh, Lists::of(lists), atom.nlocal);
     if (spheres_.empty()) return;
     double moved = std::sqrt(moved_spheres(atom));
     if (!searched && mesh.isMoving()) moved += std::sqrt(moved_corners(mesh));
-    if (searched || !(moved <= slack)) shorten(mesh, kernels, slack);
+    if (searched || !(moved <= slack)) shorten(mesh, loops.kernels.spheres, slack);
   }
 
   /// contact(triangle, sphere) for all that can touch now, in the order of LIGGGHTS's lists.
@@ -69,7 +69,6 @@ class NearSpheres {
   };
 
   void take(TriMesh& mesh, const std::vector<LAMMPS_NS::TriangleNeighlist>& lists, int owned) {
-    search_ = mesh_searches;
     std::vector<int>& place = place_;
     place.assign(owned, -1);
     spheres_.clear();
@@ -236,15 +235,14 @@ namespace loop = epdem::liggghts::loop;
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
   auto* const wall = dynamic_cast<loop::BatchedWall*>(impl);
   const loop::ScopedWall work(wall, *this);
-  bool batched_mesh_loop = wall && !loop::generic_loop() && epdem::liggghts::library_matches(lmp) &&
-                           neighbor->contactDistanceFactor == 1.0 && atom->sphere_flag && !atom->shapetype_flag &&
-                           atom->nlocal > 0;
+  const loop::LoopState* const loops = wall ? loop::active_loops(lmp) : nullptr;
+  bool batched_mesh_loop =
+      loops && neighbor->contactDistanceFactor == 1.0 && atom->sphere_flag && !atom->shapetype_flag && atom->nlocal > 0;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
     batched_mesh_loop &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
   }
   if (!batched_mesh_loop) return original(this, vflag);
-  const loop::SphereKernels& kernels = loop::sphere_kernels(lmp);
   LIGGGHTS::ContactModels::SurfacesIntersectData contact;
   contact.is_wall = true;
   auto& kept = wall->meshes;
@@ -268,8 +266,8 @@ namespace loop = epdem::liggghts::loop;
     contact.mesh = &mesh;
     contact.fix_mesh = &fix;
     loop::NearSpheres& near = kept[m]->near;
-    near.update(mesh, *fix.meshNeighlist(), *atom, kernels, neighbor->skin / 4.0);
-    near.each(kernels, [&](int triangle, int i) {
+    near.update(mesh, *fix.meshNeighlist(), *atom, *loops, neighbor->skin / 4.0);
+    near.each(loops->kernels.spheres, [&](int triangle, int i) {
       int side;
       contact.i = i;
       contact.radi = atom->radius[i];

@@ -5,8 +5,8 @@
 #include "atom_vec_sphere.h"
 #include "fix_gravity.h"
 #include "fix_nve_sphere.h"
-#include "loop.hpp"
 #include "replaced.hpp"
+#include "state.hpp"
 
 #ifdef EPDEM_BUILT_FOR
 
@@ -18,13 +18,12 @@
 namespace epdem::liggghts::loop {
 namespace {
 
-/// Whether ours take over: all of the first n spheres are in the group of a fix.
-bool has_all(LAMMPS_NS::LAMMPS* lmp, int group, int n) {
-  if (generic_loop() || !library_matches(lmp)) return false;
+/// The state if ours take over: all of the first n spheres are in the group of a fix.
+const LoopState* loops_of_all(LAMMPS_NS::LAMMPS* lmp, int group, int n) {
   const LAMMPS_NS::Atom& atom = *lmp->atom;
   int common = group;
   for (int i = 0; i < n; ++i) common &= atom.mask[i];
-  return n > 0 && common == group;
+  return n > 0 && common == group ? active_loops(lmp) : nullptr;
 }
 
 /// Half a step of the first n spheres, whose positions stay.
@@ -37,8 +36,7 @@ HalfStep half_step(LAMMPS_NS::Atom& atom, int n, int dimension, double dt, doubl
 /// Whether ghosts take positions and velocities alone from their owners, moved by whole edges of the room.
 bool sends_motion_alone(LAMMPS_NS::LAMMPS* lmp) {
   const LAMMPS_NS::Domain& d = *lmp->domain;
-  return !generic_loop() && library_matches(lmp) && !lmp->atom->radvary_flag && !d.triclinic && !d.deform_vremap &&
-         !d.is_wedge;
+  return active_loops(lmp) && !lmp->atom->radvary_flag && !d.triclinic && !d.deform_vremap && !d.is_wedge;
 }
 
 }  // namespace
@@ -51,25 +49,28 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixNVESphere::initial_integrate(int vflag) {
   static const auto original = loop::next<FixNVESphere*, int>("_ZN9LAMMPS_NS12FixNVESphere17initial_integrateEi");
   const int n = igroup == atom->firstgroup ? atom->nfirst : atom->nlocal;
-  if (extra || !loop::has_all(lmp, groupbit, n)) return original(this, vflag);
+  const loop::LoopState* const loops = extra ? nullptr : loop::loops_of_all(lmp, groupbit, n);
+  if (!loops) return original(this, vflag);
   loop::HalfStep step = loop::half_step(*atom, n, domain->dimension, dtf, onePlusCAddRhoFluid_);
   step.x = atom->x[0];
   step.dt = dtv;
-  loop::sphere_kernels(lmp).half_step(step);
+  loops->kernels.spheres.half_step(step);
 }
 
 [[gnu::visibility("default")]] void FixNVESphere::final_integrate() {
   static const auto original = loop::next<FixNVESphere*>("_ZN9LAMMPS_NS12FixNVESphere15final_integrateEv");
   const int n = igroup == atom->firstgroup ? atom->nfirst : atom->nlocal;
-  if (extra || !loop::has_all(lmp, groupbit, n)) return original(this);
-  loop::sphere_kernels(lmp).half_step(loop::half_step(*atom, n, domain->dimension, dtf, onePlusCAddRhoFluid_));
+  const loop::LoopState* const loops = extra ? nullptr : loop::loops_of_all(lmp, groupbit, n);
+  if (!loops) return original(this);
+  loops->kernels.spheres.half_step(loop::half_step(*atom, n, domain->dimension, dtf, onePlusCAddRhoFluid_));
 }
 
 [[gnu::visibility("default")]] void FixGravity::post_force(int vflag) {
   static const auto original = loop::next<FixGravity*, int>("_ZN9LAMMPS_NS10FixGravity10post_forceEi");
   const int n = atom->nlocal;
   constexpr int constant = 0;  // in LIGGGHTS's source alone
-  if (varflag != constant || fm || fix_relax || domain->deform_flag || !atom->rmass || !loop::has_all(lmp, groupbit, n))
+  if (varflag != constant || fm || fix_relax || domain->deform_flag || !atom->rmass ||
+      !loop::loops_of_all(lmp, groupbit, n))
     return original(this, vflag);
   const double *const mass = atom->rmass, g[3] = {xacc, yacc, zacc};
   double* const f = atom->f[0];

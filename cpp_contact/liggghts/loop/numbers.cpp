@@ -3,9 +3,9 @@
 // gives anew. Histories follow here; in LIGGGHTS dents and springs go to other contacts.
 #include "delete_atoms.h"
 #include "fix_contact_history.h"
-#include "loop.hpp"
 #include "modify.h"
 #include "replaced.hpp"
+#include "state.hpp"
 
 #ifdef EPDEM_BUILT_FOR
 
@@ -16,11 +16,16 @@
 namespace epdem::liggghts::loop {
 namespace {
 
-bool deletes = false;  // whether delete_atoms runs
-
 struct Histories : LAMMPS_NS::FixContactHistory {
   static int* partners(FixContactHistory& of, int i) { return (of.*(&Histories::partner_))[i]; }
 };
+
+/// Whether delete_atoms runs.
+bool deletes_atoms(LAMMPS_NS::LAMMPS* lmp) {
+  if (!library_matches(lmp)) return false;
+  const Simulation* const known = Simulation::find(lmp);
+  return known && known->loops && known->loops->deletes_atoms;
+}
 
 /// The numbers of all atoms before delete_atoms: a property that goes with its atom.
 class Numbers : protected LAMMPS_NS::Pointers {
@@ -82,16 +87,17 @@ namespace loop = epdem::liggghts::loop;
   const bool stored = modify->n_fixes_style_strict("contacthistory") > 0;
   if (!stored || !epdem::liggghts::library_matches(lmp)) return original(this, count, words);
   const loop::Numbers numbers(lmp);
-  loop::deletes = true;
+  loop::LoopState& loops = loop::state_of(lmp);
+  loops.deletes_atoms = true;
   original(this, count, words);
-  loop::deletes = false;
+  loops.deletes_atoms = false;
   numbers.follow(*static_cast<FixContactHistory*>(modify->find_fix_style_strict("contacthistory", 0)));
 }
 
 /// A second delete_atoms would read the lists of the last run, whose atoms have other places now.
 [[gnu::visibility("default")]] void FixContactHistory::pre_exchange() {
   static const auto original = loop::next<FixContactHistory*>("_ZN9LAMMPS_NS17FixContactHistory12pre_exchangeEv");
-  if (!loop::deletes || *computeflag_) original(this);
+  if (*computeflag_ || !loop::deletes_atoms(lmp)) original(this);
 }
 
 }  // namespace LAMMPS_NS

@@ -17,7 +17,7 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model>, private Planned {
 
  public:
   Pair(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::PairGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), Planned(lmp, hash, false), loop_(lmp, kernel()) {}
+      : Base(lmp, parent, hash), Planned(lmp, model_of(static_cast<Base&>(*this)), hash, false), loop_(lmp) {}
 
   void init_granular() override {
     Base::init_granular();

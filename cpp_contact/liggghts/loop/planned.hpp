@@ -11,12 +11,15 @@
 
 namespace epdem::liggghts::loop {
 
-/// LIGGGHTS's styles hide their model; the model built last belongs to the style under construction.
 class Planned {
  protected:
-  Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
-      : lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)), wall_(wall) {
-    refuse_unknown_loop(lmp);
+  Planned(LAMMPS_NS::LAMMPS* lmp, Model& model, int64_t hash, bool wall)
+      : lmp_(lmp),
+        model_(model),
+        ids_(Ids::of(hash)),
+        generic_(generic_loop(lmp)),
+        missing_(what_is_missing(ids_)),
+        wall_(wall) {
     plan_.friction = std::max(0, Frictions::place(ids_.tangential));
     plan_.settings.rolling = std::max(0, Rollings::place(ids_.rolling));
     plan_.settings.cohesion = std::max(0, Cohesions::place(ids_.cohesion));
@@ -27,10 +30,11 @@ class Planned {
     if (wall && plan_.root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
-  Kernel kernel() const { return chosen_kernels(lmp_).of[model_.normal().place()][plan_.friction][wall_]; }
-
   /// What our loop does not include, by models and settings; nullptr: nothing.
-  const char* missing() const { return missing_ ? missing_ : model_.loop_settings().missing(); }
+  const char* missing() const {
+    const char* const found = missing_ ? missing_ : model_.loop_settings().missing();
+    return !found && generic_ ? "EPDEM_LOOP = generic" : found;
+  }
 
   /// At the start of each run: settings and properties may have changed.
   void prepare() {
@@ -41,7 +45,10 @@ class Planned {
     plan_.tally = normal.tally();
     plan_.strain = normal.strain();
     plan_.growth = normal.growth();
-    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][wall_][plan_.tally != nullptr];
+    const Kernels& kernels = state_of(lmp_).kernels;
+    plan_.spheres = &kernels.spheres;
+    plan_.kernel = plan_.growth ? kernels.grown[normal.place()][plan_.friction][wall_][plan_.tally != nullptr]
+                                : kernels.of[normal.place()][plan_.friction][wall_];
     plan_.width = normal.width();
     double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =
@@ -87,6 +94,7 @@ class Planned {
   }
 
   const Ids ids_;
+  const bool generic_;
   const char* missing_;
   const bool wall_;
   std::set<std::string> said_;

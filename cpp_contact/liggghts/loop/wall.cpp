@@ -54,7 +54,7 @@ void WallLoop::compute() {
   Block& b = *block_;
   pass_.several = std::any_of(b.material, b.material + n_, [&](const double* m) { return m != b.material[0]; });
   pad(b, n_);
-  kernel_(b, n_, pass_);
+  plan_->kernel(b, n_, pass_);
   if (plan_->strain) note_strain(*plan_->strain, b);
   scatter();
   n_ = 0;

@@ -31,7 +31,7 @@ class BatchedWall {
 /// The contacts of walls, noted one by one.
 class WallLoop : protected LAMMPS_NS::Pointers {
  public:
-  WallLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
+  explicit WallLoop(LAMMPS_NS::LAMMPS* lmp) : Pointers(lmp), block_(std::make_unique<Block>()) {}
 
   /// Why this step cannot take this loop; nullptr: it can.
   const char* obstacle(LAMMPS_NS::FixWallGran& wall) const;
@@ -49,7 +49,6 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   void compute();
   void scatter();
 
-  const Kernel kernel_;
   const std::unique_ptr<Block> block_;
   LAMMPS_NS::FixMeshSurface* mesh_[block_size];
   int triangle_[block_size];
@@ -64,7 +63,7 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
 
  public:
   Wall(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::FixWallGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), Planned(lmp, hash, true), loop_(lmp, kernel()) {}
+      : Base(lmp, parent, hash), Planned(lmp, model_of(static_cast<Base&>(*this)), hash, true), loop_(lmp) {}
 
   void init_granular() override {
     Base::init_granular();

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "../law_model.hpp"
+#include "../simulation.hpp"
 
 namespace epdem::liggghts {
 
@@ -68,15 +69,6 @@ std::string names() {
   return all;
 }
 
-/// Names the models once.
-void announce(LAMMPS* lmp) {
-  static LAMMPS* known = nullptr;
-  if (known == lmp) return;
-  known = lmp;
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // error->one ends in MPI_Abort: on a pipe its message would be lost
-  say(lmp, "epdem " EPDEM_VERSION ":" + names());
-}
-
 /// What the loops of LIGGGHTS-PFM call: a law with its surface, tangential and rolling models.
 template <class Law, bool wall, int tangential, int rolling>
 class Model {
@@ -91,7 +83,8 @@ class Model {
         rolling_(lmp, setup) {
     if (wall && history_size<Law> == 1)
       setup->add_history_value("spare", "0");  // a wall's history of one value is refused
-    announce(lmp);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // error->one ends in MPI_Abort: on a pipe its message would be lost
+    if (!wall) say_once(lmp, "epdem " EPDEM_VERSION ":" + names());
   }
 
   int64_t hashcode() { return STYLE_HASHCODE; }

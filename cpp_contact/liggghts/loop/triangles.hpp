@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "atom.h"
 #include "host.hpp"
 #include "kernels/spheres.hpp"
 
 namespace epdem::liggghts::loop {
-
-/// A test of all spheres, owned and ghosts, where they are now; valid until the next one is made.
-kernels::NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double skin);
-
-/// How many times this rank has searched the neighbours of a mesh.
-extern long mesh_searches;
 
 /// Access to protected members of TriMesh.
 struct Triangles : LAMMPS_NS::TriMesh {
