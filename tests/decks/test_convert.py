@@ -177,5 +177,9 @@ def test_a_good_deck_and_values_that_the_deck_computes_give_no_sentence(tmp_path
     done = CliRunner().invoke(app, ["deck", str(path), "--check", "--json"])
     assert done.exit_code == 1 and len(json.loads(done.stdout)["warnings"]) == 2
     assert "--out is missing" in str(CliRunner().invoke(app, ["deck", str(path)]).exception)
+    converted = ["deck", str(path), "--convert", "--set", "youngsModulus=1e9", "--set", "yieldPressure=1e8"]
+    done = CliRunner().invoke(app, [*converted, "--out", str(tmp_path / "out")])
+    place = f"{tmp_path / 'out/my.in'}, line 3: yieldPressure of type 1 = 1e+08 is 0.19 E*"
+    assert done.exit_code == 0 and place in done.stderr
     path.write_text("units si\n")
     assert "name a LIGGGHTS deck" in str(CliRunner().invoke(app, ["deck", str(path), "--check"]).exception)

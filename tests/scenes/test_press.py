@@ -14,6 +14,7 @@ from stored_runs import CASES
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
+from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.scenes import report, stages
 from epdem.scenes.columns import units
@@ -192,7 +193,34 @@ def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
     assert two.passed
 
 
+@pytest.mark.liggghts
+def test_an_ejection_pushes_the_tablet_by_its_way_against_the_friction_of_the_sides_and_is_no_result(tmp_path):
+    sides = [
+        {"name": f"on_{wall}", "kind": "force", "wall": wall, "component": "z"}
+        for wall in ("left", "right", "front", "back")
+    ]
+    data = press(stages=["40 MPa"], hold=None, eject="0.1 mm", measure=sides) | {"contact": {"friction": 0.3}}
+    data["scene"] = {key: value for key, value in data["scene"].items() if value is not None}
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    found = outcome.results.tables["stages"].set_index("phase")
+    assert found.index.to_list() == ["stage1", "release1", "eject"]
+    z = outcome.results.particles.groupby("step")["z"].mean()
+    assert z[found["step"]["eject"]] - z[found["step"]["release1"]] == pytest.approx(
+        1e-4, rel=0.07
+    )  # it yields a little
+    rows = outcome.results.rows.set_index("step").loc[found["step"]["release1"] :]
+    friction = rows[[m["name"] for m in sides]].sum(axis=1)
+    pushed = (rows["floor_pressure"] - rows["pressure"]) * SIDE**2
+    assert pushed.iloc[-50:].mean() == pytest.approx(friction.iloc[-50:].mean(), rel=0.05)
+    assert found["opposite_pressure"]["eject"] > 2.0 * found["pressure"]["eject"]
+    assert found["radial_pressure"].notna().to_list() == [True, False, False]
+    (said,) = [warning for warning in outcome.warnings if "phase eject" in warning]
+    assert "its forces are no results" in said and outcome.passed
+
+
 REFUSED = [
+    (press(eject="1 mm"), "eject is a way along the sides of a die, of at most half of height"),
+    (press(eject="0.1 mm", periodic=True), "remove periodic"),
     (without(press(), "box"), "a die has a diameter or a box"),
     (press(diameter="1 mm"), "a round die has a diameter, and neither box nor periodic"),
     (press(mass="1 mg"), "give one of count and mass"),
@@ -201,6 +229,22 @@ REFUSED = [
     (press() | {"measured": {"source": "x", "pressures": ["1 MPa"], "relative_densities": []}}, "one density for each"),
     (read_toml(CASES / "settle_glass.toml") | {"measured": press()["measured"]}, "take kind press"),
 ]
+
+
+def of_length(factor):
+    """The press with all lengths multiplied: a room that begins at z = 0 and ends at 1.05 of the height."""
+    data = press(box=[f"{factor * SIDE} m"] * 2, height=f"{factor * HEIGHT} m", speed=f"{3 * factor} m/s")
+    data["scene"]["particles"] = [{"material": "powder", "radius": f"{factor * RADIUS} m"}]
+    return plan(parse(data))
+
+
+def test_a_punch_that_liggghts_takes_for_an_empty_mesh_is_refused_in_a_sentence():
+    """LIGGGHTS 3.8 refuses meshes whose largest and smallest coordinate differ by less than 1e-4 (m, here)."""
+    smallest = 1e-4 / (HEIGHT + 0.5 * SIDE)  # the punch at the start reaches from x = -side/2 to z = height
+    scene_engine("liggghts").check_scene(of_length(1.01 * smallest))
+    with pytest.raises(CaseError, match=r"scene.wall.punch: its coordinates span 9.9e-05 m, .* lengths 1000 times"):
+        scene_engine("liggghts").check_scene(of_length(0.99 * smallest))
+    scene_engine("yade").check_scene(of_length(0.99 * smallest))
 
 
 @pytest.mark.parametrize(("data", "words"), REFUSED, ids=[words for _, words in REFUSED])

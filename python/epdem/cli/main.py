@@ -179,12 +179,13 @@ def deck(
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
             )
+        from ..engines.liggghts.deck_checks import check_file
         from ..engines.liggghts.own_decks import convert_file
         from ..studies.sweep.points import settings as values_of
 
         values = values_of(given or [], example="yieldPressure=1e8")
         files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
-        print("\n".join(notes), file=sys.stderr)
+        print("\n".join([*notes, *check_file(files[0])]), file=sys.stderr)
         print_files(files, as_json)
         return
     if file.suffix == ".j2":

@@ -221,7 +221,9 @@ def _springback(p: ScenePlan, tables: Tables) -> list[Panel]:
     for n in np.flatnonzero(ends["springback"].notna()):
         during = rows["step"].between(ends["step"][n - 1], ends["step"][n], inclusive="right")
         strain = rows["height"][during] / loaded[n] - 1.0
-        series.append(Series(ends["phase"][n], pressure[during], strain.to_numpy(), len(series) % len(PALETTE)))
+        series.append(
+            Series(ends["phase"][n], pressure[during], strain.to_numpy(), 1 + len(series) % (len(PALETTE) - 1))
+        )
     return [Panel(Axis("pressure", "Pa"), Axis("springback"), series)] if series else []
 
 

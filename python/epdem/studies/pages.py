@@ -247,13 +247,13 @@ def impacts_decks(outcome: Outcome) -> list[Lines]:
 
 DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
 TABLES = [
-    ("checks", "Checks", "Each number against its expected value."),
     (
         "stages",
         "Stages",
         "The end of each phase. After a release the law leaves too much stress on the sides: no radial pressure stands "
         "there, and the force of an ejection is no result.",
     ),
+    ("checks", "Checks", "Each number against its expected value."),
     ("energy_balance", "Energy balance", "One row for each frame."),
     ("measures", "Measures", "One row for each frame."),
     ("histograms", "Histograms", ""),

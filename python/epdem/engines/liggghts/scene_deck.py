@@ -5,6 +5,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ...base import rendering as decks
 from ...base.declarations import declarations
 from ...case.walls import LinearMove
@@ -26,6 +28,7 @@ WORKS = {  # what dumps call the works and energies of a sphere
     "friction_energy": "f_frictionEnergy",
 }
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
+LEAST_SPAN = 1e-4  # of all coordinates of a mesh [m]
 
 
 def _properties(p: ScenePlan) -> tuple[Property, ...]:
@@ -113,6 +116,18 @@ def _refuse_room(p: ScenePlan) -> None:
         )
 
 
+def _refuse_meshes(p: ScenePlan) -> None:
+    """Raise CaseError for a mesh that LIGGGHTS takes for an empty one."""
+    formulas = tubes(p)
+    for name, triangles in p.triangles.items():
+        if name not in formulas and np.ptp(triangles) < LEAST_SPAN:
+            raise CaseError(
+                f"scene.wall.{name}: its coordinates span {np.ptp(triangles):.3g} m, LIGGGHTS takes meshes from "
+                f"{LEAST_SPAN:g} m on; give all lengths 1000 times, which changes no density under pressure without "
+                "gravity and adhesion, or use --engine lammps"
+            )
+
+
 def _refuse_skin(p: ScenePlan) -> None:
     """Raise CaseError for a skin with which planes and cylinders find spheres late that touch them by growth alone."""
     skin, least = p.case.numerics.skin, SKIN_OF_GROWTH * p.largest
@@ -171,6 +186,7 @@ class SceneDeck:
 def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
+    _refuse_meshes(p)
     _refuse_skin(p)
     _refuse_restarts(p)
     m = p.model
