@@ -139,8 +139,8 @@ def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
 
 
 def warnings(p: ScenePlan, tables: Tables) -> list[str]:
-    """A sentence for a press that is too fast for an even stress while it loads, for an ejection, and for spheres behind
-    the punch."""
+    """A sentence for a press that is too fast for an even stress while it loads, for an ejection, and for spheres that
+    have passed the punch."""
     declared = p.scene.stages
     assert declared is not None
     found, numbers = [], inertial_numbers(p, loaded(p, tables["stages"]))
@@ -152,7 +152,7 @@ def warnings(p: ScenePlan, tables: Tables) -> list[str]:
             f"inertia bears a part of the pressure; {speed * SLOW / numbers.max():.2g} m/s is slow enough"
         )
     found += [
-        f"phase {phase.name}: its forces are no results: after a release the law leaves all of the stress on the sides, "
+        f"phase {phase.name}: its forces are no results: after a release the law leaves all stress on the sides, "
         "finite elements 27 to 33 % (docs/choose.md, Pressing)"
         for phase in p.phases
         if np.any(phase.velocity(declared.against)) and towards(p, declared, phase) == 0.0
