@@ -15,7 +15,6 @@ from epdem.engines.liggghts import engine as liggghts
 from epdem.engines.liggghts import scene_deck as liggghts_scene
 from epdem.engines.yade import engine as yade
 from epdem.engines.yade import scene_deck as yade_scene
-from epdem.verification.stability.assembly_liggghts import AssemblyDeck
 
 TEMPLATES = Path(__file__).parents[2] / "templates"
 IMPACTS = {"liggghts": liggghts.ImpactDeck, "lammps": lammps.ImpactDeck, "yade": yade.ImpactDeck}
@@ -28,8 +27,6 @@ def decks_of(path: Path) -> list[type]:
     host = path.parent.name
     if path.name == "macros.j2":
         return [IMPACTS[host], SCENES[host]]
-    if path.name.startswith("assembly"):
-        return [AssemblyDeck]
     return [SCENES[host] if path.name.startswith("scene") or path.name == "spheres.data.j2" else IMPACTS[host]]
 
 

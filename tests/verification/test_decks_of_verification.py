@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Decks of motions, variants of a set-up, assemblies, precisions and LAMMPS's mdr are as stored."""
+"""Decks of motions, variants of a set-up and LAMMPS's mdr are as stored."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,11 +16,6 @@ from epdem.verification.motion import liggghts as liggghts_motions
 from epdem.verification.motion import yade as yade_motions
 from epdem.verification.motion.compare import touch_of
 from epdem.verification.motion.paths import shear_elastic
-from epdem.verification.stability import precisions_yade as precisions
-from epdem.verification.stability.assembly import AssemblyPlan
-from epdem.verification.stability.assembly_liggghts import LiggghtsAssemblies
-from epdem.verification.stability.scenes import SCENES as ASSEMBLIES
-from epdem.verification.stability.scenes import with_law
 from stored_decks import CASES, SPHERE, compare, planned
 
 HERE = Path(__file__).parent
@@ -58,15 +53,3 @@ def test_the_decks_of_a_variant_are_as_stored(variant, module):
     compare(HERE, f"pairs_{variant}", "".join(liggghts_pairs.scripts(Liggghts().deck(found.plan), found, variant)))
     if variant in yade_pairs.VARIANTS:
         compare(HERE, f"yade_pairs_{variant}", "".join(yade_pairs.scripts(Yade().deck(found.plan), found, variant)))
-
-
-@pytest.mark.parametrize(("name", "law"), [("plate", "cavity"), ("mixture", "hertz"), ("shock", "thornton")])
-def test_the_deck_of_an_assembly_is_as_stored(name, law, tmp_path):
-    scene = with_law(ASSEMBLIES[name]((2, 2, 4)), law)
-    LiggghtsAssemblies().write(AssemblyPlan(scene, scene.time_step(), 4), tmp_path)
-    compare(HERE, f"assembly_{name}", (tmp_path / "in.assembly").read_text())
-
-
-def test_the_script_of_other_precisions_is_as_stored():
-    p = planned({}, "hertz")
-    compare(HERE, "yade_precisions", precisions.deck(p.experiment, p.time_step, p.gap[:8], p.steps))

@@ -8,19 +8,18 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from epdem.engines import scene_engine
+from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
 from epdem.laws.library import Law
 from epdem.verification import native, stability
 from epdem.verification.cli import app
 from epdem.verification.models import engine
-from epdem.verification.stability import bulk, bulk_checks, precisions, precisions_yade, repeats, roundoff
-from epdem.verification.stability.assembly import AssemblyPlan
-from epdem.verification.stability.assembly_liggghts import assembly_engine
+from epdem.verification.stability import bulk, repeats, roundoff
 from epdem.verification.stability.cases import extremes
 from epdem.verification.stability.repeats import judge_repeats
 from epdem.verification.stability.running import judge, measure, setting
 from epdem.verification.stability.sampling import EmbeddedSampler, PositionSampler, Sample
-from epdem.verification.stability.scenes import SCENES, with_law
 from epdem.verification.stability.two_walls import balance, path, stored
 from scripts import script
 
@@ -166,15 +165,6 @@ def test_round_off_of_positions_stays_below_its_formula_and_above_a_tenth_of_it(
     assert table["double"].max() < 1e-14
 
 
-@pytest.mark.yade
-@pytest.mark.skipif(not precisions_yade.available(), reason="YADE's builds of other precisions are not installed")
-def test_eleven_more_bits_lower_the_floor_of_yade_two_thousandfold():
-    """Round-off and nothing else: 2^11 = 2048 up to the scatter of 8 phases, a factor of 3."""
-    row = precisions.floors(times=(1e-2,)).iloc[0]
-    assert 2**11 / 3 < row["yade"] / row["yade-longdouble"] < 3 * 2**11
-    assert row["yade"] < row["formula"]
-
-
 def test_overlap_at_the_start_stores_its_work():
     """Energy: a contact that starts at 2 alpha_max comes back faster than it was thrown, by the elastic share."""
     s = setting(BY_NAME["start_overlap_2"], "hertz")
@@ -201,28 +191,46 @@ def test_round_off_of_liggghts_is_that_of_positions_and_of_nothing_else(tmp_path
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize("name", list(bulk.SCENES))
 def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(name, tmp_path):
     """Some 150 spheres for half the time here, 2,000 in the command; the tolerances are those of full size."""
     small = {"plate": (5, 5, 6), "mixture": (6, 5, 5), "shock": (4, 4, 10)}[name]
-    scene = with_law(SCENES[name](small), "cavity")
-    verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), assembly_engine(), tmp_path)
+    case = bulk.scene_case(name, "cavity", tmp_path, lattice=small, duration=0.5)
+    verdict = bulk.judge_scene(case, scene_engine("liggghts"), tmp_path)
     assert verdict.passed, verdict.reason
-    assert verdict.plastic > 0.02
+    assert verdict.plastic > 0.02 and max(verdict.rise, verdict.off) < 2e-5
+
+
+class Quick(Liggghts):
+    """A planted fault: velocities 1 % too high in the second half of the frames."""
+
+    def run(self, job, folder, **named):
+        tables = super().run(job, folder, **named)
+        late = tables["particles"]["step"] > job.steps / 2
+        tables["particles"].loc[late, ["vx", "vy", "vz"]] *= 1.01
+        return tables
+
+
+class Ending(Liggghts):
+    """A planted fault: several ranks keep half of the motion of the last frame, and lose a sphere before it."""
+
+    def run(self, job, folder, *, ranks=1, **named):
+        tables = super().run(job, folder, ranks=ranks, **named)
+        last = tables["particles"]["step"] == job.steps
+        if ranks > 1:
+            tables["particles"].loc[last, ["x", "vx", "vy", "vz"]] *= 0.5
+        return tables | {"particles": tables["particles"][~(last & (tables["particles"]["id"] == 1))]}
 
 
 @pytest.mark.liggghts
-def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
-    """A planted fault: velocities 1 % too high in the second half of the frames."""
-    scene = SCENES["shock"]((4, 4, 8))
-    plan, tool = AssemblyPlan(scene, scene.time_step(), bulk.FRAMES), assembly_engine()
-    tool.write(plan, tmp_path)
-    tool.run(tmp_path)
-    table = bulk.energy_balance(plan, tool, tmp_path)
-    brought, half = table["kinetic"].iloc[0], len(table) // 2
-    assert np.abs(table["total"] - table["total"].iloc[0]).max() <= bulk_checks.SWING * brought
-    wrong = table["total"] + np.where(table.index >= half, 0.0201 * table["kinetic"], 0.0)
-    assert wrong.diff().max() > bulk_checks.SWING * brought
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [(Quick, ["total energy rises by", "total energy is off"]), (Ending, ["1 spheres lost", "part by", "kinetic"])],
+)
+def test_the_judge_of_bulk_scenes_sees_energy_from_nothing_lost_spheres_and_ranks_that_differ(fault, words, tmp_path):
+    case = bulk.scene_case("shock", "thornton", tmp_path, lattice=(4, 4, 8))
+    verdict = bulk.judge_scene(case, fault(), tmp_path)
+    assert not verdict.passed and all(word in verdict.reason for word in words), verdict.reason
 
 
 def test_the_page_of_the_documentation_names_its_command_and_every_case():

@@ -62,7 +62,7 @@ def of_stability(outcome: Stability, path: Path) -> Path:
     verdicts = outcome.verdicts
     count = verdicts["status"].value_counts()
     parts: list[Part] = [Rows("By engine and law", summary(verdicts)), Rows("Every case", verdicts)]
-    named = {"Round-off": outcome.roundoff, "Bulk scenes": outcome.bulk, "Precisions of YADE": outcome.precisions}
+    named = {"Round-off": outcome.roundoff, "Bulk scenes": outcome.bulk}
     parts += [Rows(title, table) for title, table in named.items() if not table.empty]
     parts.append(common.origin({}, {}))
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."

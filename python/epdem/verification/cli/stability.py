@@ -58,7 +58,6 @@ def stability(
                     "rows": records(outcome.verdicts),
                     "roundoff": records(outcome.roundoff),
                     "bulk": records(outcome.bulk),
-                    "precisions": records(outcome.precisions),
                 },
                 indent=1,
             )

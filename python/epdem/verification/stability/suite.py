@@ -9,15 +9,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from ...engines import ImpactEngine
+from ...engines import DEFAULT_ENGINE, ImpactEngine, scene_engine
 from ...engines.embedded import Embedded
 from ...engines.yade.engine import Yade
 from ...errors import CaseError
 from ...jobs.engine import Feature, check_law, has_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from ..models import engine
-from . import bulk_checks, precisions, precisions_yade
-from .assembly_liggghts import LiggghtsAssemblies
+from . import bulk
 from .cases import Extreme, extremes
 from .repeats import judge_repeats
 from .roundoff import floors
@@ -31,15 +30,14 @@ LAW_OF_SLOW = "thornton"  # if it is among those given; a slow engine runs the f
 
 @dataclass(frozen=True)
 class Outcome:
-    """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law;
+    """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law.
 
-    precisions: round-off in an engine's builds of other precisions, per speed. Empty where they did not run.
+    Empty where they did not run.
     """
 
     verdicts: pd.DataFrame
     roundoff: pd.DataFrame
     bulk: pd.DataFrame
-    precisions: pd.DataFrame
 
     @property
     def passed(self) -> bool:
@@ -70,8 +68,8 @@ def run(
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine (none: embedded).
 
     `steps` is the length of the drift by bounces (1e9), `cycles` the number of reloads. Laws none given: all that the
-    engine has. Without `groups` the round-off floor is measured, in other precisions too where an engine has them, and
-    the stiff bulk scenes run where an engine runs assemblies. Raises CaseError for a law or group that does not exist,
+    engine has. Without `groups` the round-off floor is measured, and the stiff bulk scenes run if LIGGGHTS is among the
+    engines. Raises CaseError for a law or group that does not exist,
     a law that an engine does not have and a choice that leaves an engine no case, EngineError for an engine that is not
     here.
     """
@@ -110,15 +108,9 @@ def run(
             tables = [floors(law, others) for law in plain]
     verdicts = pd.DataFrame([asdict(v) for v in rows])
     verdicts["notes"] = verdicts["notes"].map("; ".join)
-    stiff = plain and not groups and LiggghtsAssemblies.name in engines
-    bulk = bulk_checks.run(plain, progress=progress) if stiff else pd.DataFrame()
-    finer = Yade.name in engines and not groups and precisions_yade.available()
-    return Outcome(
-        verdicts,
-        pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(),
-        bulk,
-        precisions.floors() if finer else pd.DataFrame(),
-    )
+    stiff = plain and not groups and DEFAULT_ENGINE in engines
+    scenes = bulk.run(plain, scene_engine(DEFAULT_ENGINE), progress=progress) if stiff else pd.DataFrame()
+    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), scenes)
 
 
 def _work(tool: ImpactEngine, laws: list[str], chosen: list[Extreme]) -> list[tuple[str, Extreme]]:
