@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import warm_yade
+from epdem.engines.lammps import launcher as lammps
 
 settings.register_profile("epdem", derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 settings.load_profile("epdem")
@@ -73,11 +74,18 @@ def pytest_collection_modifyitems(items):
     module is skipped where nothing can build it."""
     items[:] = in_shares(items, int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1)))
     for item in items:
-        for name, command in ENGINES.items():
-            if item.get_closest_marker(name) and not shutil.which(name) and not os.environ.get("CI"):
-                item.add_marker(pytest.mark.skip(reason=f"{name} is not installed ({command})"))
+        for name in ("lammps", *ENGINES):
+            if item.get_closest_marker(name) and not os.environ.get("CI") and (reason := missing(name)):
+                item.add_marker(pytest.mark.skip(reason=reason))
         if needs_module(item) and not {"YADE_SOURCE", "EPDEM_YADE_MODULE"} & {*os.environ}:
             item.add_marker(pytest.mark.skip(reason="YADE_SOURCE names no source of YADE; its headers are needed"))
+
+
+def missing(name):
+    """Why an engine cannot run here, or None."""
+    if name == "lammps":
+        return lammps.missing()
+    return None if shutil.which(name) else f"{name} is not installed ({ENGINES[name]})"
 
 
 def in_shares(items, processes):

@@ -64,7 +64,7 @@ def test_the_commands_of_the_page_run(tmp_path):
     assert "model ep/thornton" in (tmp_path / "converted/my.in").read_text()
 
 
-@pytest.mark.skipif(bool(launcher.missing()), reason=str(launcher.missing()))
+@pytest.mark.lammps
 def test_lammps_takes_the_lines_of_the_page_and_names_what_is_wrong(tmp_path):
     lines = block("text", "pair_coeff")
     for name, text in (("right", lines), ("wrong", lines.replace("2.8e9", "-1"))):

@@ -10,7 +10,7 @@ import pytest
 
 from epdem.engines.lammps import launcher
 
-needs_lammps = pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
+needs_lammps = pytest.mark.lammps
 
 THORNTON = "thornton 1e8 0.3 4e5"
 BOX = (0.04, 0.02, 0.02)  # [m]

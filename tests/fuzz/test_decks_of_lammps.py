@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from epdem.engines.lammps import launcher
 
-pytestmark = pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
+pytestmark = pytest.mark.lammps
 
 FEATURES = read_features("lammps")
 RADIUS, PITCH = 1e-3, 1.96e-3  # [m]

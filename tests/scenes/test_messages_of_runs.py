@@ -30,7 +30,6 @@ from epdem.jobs.stage import Inputs, Stage
 from epdem.scenes import columns, run, walls
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
-from epdem.verification.stability.edits import Edit
 from epdem.verification.theory.criteria import principal
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -149,7 +148,7 @@ def test_decks_and_studies(tmp_path):
     deck = tmp_path / "deck"
     deck.write_text("run 1\nrun 2\n")
     with says("2 lines start with 'run', expected 1"):
-        variants.edit(deck, Edit("run", ()))
+        variants.edit(deck, variants.Edit("run", ()))
     with says("deck cannot be made into another set-up"):
         variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):

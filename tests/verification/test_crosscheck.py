@@ -15,7 +15,6 @@ import pytest
 
 from epdem.case.impact import load, parse
 from epdem.case.toml import read_toml
-from epdem.engines.lammps import launcher
 from epdem.engines.lammps.engine import Lammps
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -32,7 +31,7 @@ STEEL = CASES / "steel_wall.toml"
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 CLOSED = [name for name in OWN_LAW if name != "lammps-mdr"]
 in_liggghts, in_yade = pytest.mark.liggghts, pytest.mark.yade("module")
-in_lammps = pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
+in_lammps = pytest.mark.lammps
 
 
 @pytest.mark.parametrize("host", [pytest.param("liggghts", marks=in_liggghts), pytest.param("lammps", marks=in_lammps)])
@@ -115,12 +114,11 @@ def test_luding_of_two_steel_spheres_at_10_m_per_s_is_0_8910_in_both_codes(name,
     assert measure(p, tool.run(p, tmp_path)).e_n == pytest.approx(0.891046, abs=2e-5)
 
 
+@in_lammps
 def test_mdr_of_lammps_has_its_own_theory_while_its_radius_does_not_grow(tmp_path):
     """It takes the first step after yielding for the yield overlap: of first order, 2.3e-3 of overlap_max at 400 steps.
     Up to 6 m/s its apparent radius grows by less than 1e-5 of the radius, which is 1e-3 of the overlap."""
     tool = OWN_LAW["lammps-mdr"]()
-    if reason := tool.missing():
-        pytest.skip(reason)
     x = experiment(load(STEEL))
     x = replace(x, speed=x.speed[x.speed < 6])
     prediction = foreign.prediction(tool, x)

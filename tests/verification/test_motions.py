@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from epdem.case.toml import read_toml
-from epdem.engines.lammps import launcher
 from epdem.errors import CaseError, EngineError
 from epdem.verification.motion import paths as motions
 from epdem.verification.motion.compare import compare, touch_of
@@ -131,7 +130,7 @@ def test_the_engines_agree_on_adhesion(law, tmp_path):
     assert (np.array(loads["F_i"]) @ motions.NORMAL).min() < -1.0  # it pulls
 
 
-@pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
+@pytest.mark.lammps
 def test_lammps_agrees_on_two_laws(tmp_path):
     outcome = compare(CASES / "oblique_steel.toml", laws=LAWS[1:3], engines=["embedded", "lammps"], out=tmp_path)
     assert outcome.passed and len(outcome.rows) == 2 * 6 * 2

@@ -197,8 +197,8 @@ def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(na
     small = {"plate": (5, 5, 6), "mixture": (6, 5, 5), "shock": (4, 4, 10)}[name]
     case = bulk.scene_case(name, "cavity", tmp_path, lattice=small, duration=0.5)
     verdict = bulk.judge_scene(case, scene_engine("liggghts"), tmp_path)
-    assert verdict.passed, verdict.reason
-    assert verdict.plastic > 0.02 and max(verdict.rise, verdict.off) < 2e-5
+    assert verdict["passed"], verdict["reason"]
+    assert verdict["plastic"] > 0.02 and max(verdict["rise"], verdict["off"]) < 2e-5
 
 
 class Quick(Liggghts):
@@ -225,12 +225,12 @@ class Ending(Liggghts):
 @pytest.mark.liggghts
 @pytest.mark.parametrize(
     ("fault", "words"),
-    [(Quick, ["total energy rises by", "total energy is off"]), (Ending, ["1 spheres lost", "part by", "kinetic"])],
+    [(Quick, ["rise", "off"]), (Ending, ["lost = 1, at most 0", "growth", "energy_difference"])],
 )
 def test_the_judge_of_bulk_scenes_sees_energy_from_nothing_lost_spheres_and_ranks_that_differ(fault, words, tmp_path):
     case = bulk.scene_case("shock", "thornton", tmp_path, lattice=(4, 4, 8))
     verdict = bulk.judge_scene(case, fault(), tmp_path)
-    assert not verdict.passed and all(word in verdict.reason for word in words), verdict.reason
+    assert not verdict["passed"] and all(word in verdict["reason"] for word in words), verdict["reason"]
 
 
 def test_the_page_of_the_documentation_names_its_command_and_every_case():

@@ -6,18 +6,17 @@ references are in the files.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from string import Template
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from ..base import paths
-from ..base.files import claim, results_folder, write_texts
-from ..base.tables import write_csv
+from ..base.files import results_folder, write_texts
 from ..case.impact import parse
 from ..case.sizes import LARGEST_FILE
 from ..case.toml import text_of
@@ -27,10 +26,11 @@ from ..impacts.experiment import experiment
 from ..jobs.engine import require
 from ..laws.library import Array
 from ..laws.strengths import find_law
-from .motion.compare import DEFAULT, engine
+from .motion.compare import engine
 from .motion.prescribed import Loads, Motion, MotionEngine, Touch, columns_of, read
+from .runner import STUDIES, Outcome, Progress, Row, run, silent
 
-TABLE, DECK = "contacts.csv", "in.contacts"
+DECK = "in.contacts"
 NEEDED = ("variables", "pair_style", "pair_coeff", "pre_commands", "post_commands", "run_segments", "epsilon")
 
 
@@ -88,19 +88,6 @@ class ContactTest:
         return Touch(x, float(options[friction + 2]), options[friction + 1])  # type: ignore[arg-type]
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """rows: case, engine, quantity, error, tolerance, passed."""
-
-    rows: pd.DataFrame
-    folder: Path
-
-    @property
-    def passed(self) -> bool:
-        """Whether every error is within its tolerance."""
-        return bool(self.rows["passed"].all())
-
-
 def stored_tests() -> list[Path]:
     """The YAML files of data/plastic_contacts."""
     return sorted(paths.beside("data").glob("plastic_contacts/*.yaml"))
@@ -132,28 +119,27 @@ def compare(
     engines: Sequence[str] = (),
     out: Path | None = None,
     force: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Outcome:
-    """Run the tests of `files`, else the stored ones, on each engine. Raises CaseError, EngineError."""
-    tools = [engine(name) for name in dict.fromkeys(engines or DEFAULT)]
+    """Run the tests of `files`, else the stored ones, on each engine. Raises CaseError, EngineError.
+
+    Rows: case, engine, quantity, error, tolerance.
+    """
+    tools = STUDIES["contacts"].tools(engines, engine)
     tests = [read_test(path) for path in files or stored_tests()]
     require(*tools)
-    folder, rows = results_folder(out, "plastic_contacts"), []
-    with claim(folder, force=force, files=[TABLE]):
-        for test in tests:
-            for tool in tools:
-                progress(f"{test.name}, {tool.name}")
-                found = motion_errors(test, tool, folder / tool.name / test.name)
-                if tool.name == "lammps":
-                    found |= dynamic_errors(test, folder / tool.name / test.name / "impact")
-                rows += [
-                    {"case": test.name, "engine": tool.name, "quantity": name, "error": error, "tolerance": limit}
-                    for name, (error, limit) in found.items()
-                ]
-        table = pd.DataFrame(rows)
-        table["passed"] = table["error"] <= table["tolerance"]
-        write_csv(folder / TABLE, table)
-    return Outcome(table, folder)
+    folder = results_folder(out, "plastic_contacts")
+    return run("contacts", _rows(tests, tools, folder, progress), folder, force=force)
+
+
+def _rows(tests: list[ContactTest], tools: list[MotionEngine], folder: Path, progress: Progress) -> Iterator[Row]:
+    for test, tool in product(tests, tools):
+        progress(f"{test.name}, {tool.name}")
+        found = motion_errors(test, tool, folder / tool.name / test.name)
+        if tool.name == "lammps":
+            found |= dynamic_errors(test, folder / tool.name / test.name / "impact")
+        for name, (error, limit) in found.items():
+            yield {"case": test.name, "engine": tool.name, "quantity": name, "error": error, "tolerance": limit}
 
 
 def motion_errors(test: ContactTest, tool: MotionEngine, folder: Path) -> dict[str, tuple[float, float]]:

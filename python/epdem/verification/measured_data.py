@@ -4,8 +4,9 @@
 import csv
 import re
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,10 @@ import pandas as pd
 
 from ..base import paths
 from ..base.declarations import declarations
-from ..base.files import claim, results_folder
-from ..base.tables import write_csv
+from ..base.files import results_folder
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml
-from ..engines import DEFAULT_ENGINE, ImpactEngine
-from ..engines.embedded import Embedded
+from ..engines import ImpactEngine
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, experiment
 from ..impacts.plan import plan
@@ -28,8 +27,8 @@ from ..jobs.engine import require
 from ..laws.strengths import default_numbers, find_law, strength_of_hardness
 from ..studies.calibrate import EXPONENT, hardness_test, specimen
 from .models import engine
+from .runner import STUDIES, Progress, Row, run, silent
 
-ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
 QUANTITIES = ("e_n", "dent_width")
 HEAD = ("title", "case", "source", "material", "read", "uncertainty")
 COLUMNS = ("quantity", "value", "uncertainty", "speed", "strength of", "left out")
@@ -128,9 +127,9 @@ def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Pa
         x = experiment(case_of(measured, str(material), float(given), speeds.tolist(), law), law)
         prediction = predict(x)
         for tool in tools:
-            run, _ = run_and_compare(plan(x, prediction), prediction, tool, scratch)
+            impacts, _ = run_and_compare(plan(x, prediction), prediction, tool, scratch)
             for point in points.itertuples():
-                row = run.iloc[int(np.flatnonzero(speeds == point.speed)[0])]
+                row = impacts.iloc[int(np.flatnonzero(speeds == point.speed)[0])]
                 found = _simulated(x, row, str(point.quantity))
                 about = {"set": measured.name, "law": law, "engine": tool.name, "quantity": point.quantity}
                 numbers = {"speed": point.speed, measured.given: given, "measured": point.value, "found": found}
@@ -176,31 +175,34 @@ def validate(
     chosen: Sequence[str] = (),
     out: Path | None = None,
     force: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Validation:
     """Run every law (or those `chosen`) against every set on every engine; measured.csv in the folder has the points.
 
     A law that needs numbers which a set's case does not have is left out. Raises CaseError, EngineError.
     """
     measured = [read(name) for name in dict.fromkeys(sets)] or [read(name) for name in names()]
-    tools = [engine(name) for name in dict.fromkeys(engines or ENGINES)]
+    tools = STUDIES["data"].tools(engines, engine)
     require(*tools)
     absent: dict[str, str] = {}
-    rows: list[dict[str, object]] = []
     folder = results_folder(out, "validate")
-    with claim(folder, force=force, files=["measured.csv"]), tempfile.TemporaryDirectory() as scratch:
-        for law in dict.fromkeys(chosen) or declarations():
-            for one in measured:
+    with tempfile.TemporaryDirectory() as scratch:
+
+        def rows() -> Iterator[Row]:
+            numbers: dict[tuple[object, ...], int] = {}
+            for law, one in product(dict.fromkeys(chosen) or declarations(), measured):
                 progress(f"{one.name}, {law}")
                 try:
                     with named(one.name):
-                        rows += _of_law(one, law, tools, Path(scratch))
+                        found = _of_law(one, law, tools, Path(scratch))
                 except CaseError as error:
                     if chosen:
                         raise
                     absent[law] = str(error)
-        points = pd.DataFrame(rows)
-        same = points.groupby(["set", "quantity", "measured", "speed"], sort=False)
-        points.insert(0, "number", same.ngroup() + 1)
-        write_csv(folder / "measured.csv", points)
+                    continue
+                for row in found:
+                    point = tuple(row[key] for key in ("set", "quantity", "measured", "speed"))
+                    yield {"number": numbers.setdefault(point, len(numbers) + 1)} | row
+
+        points = run("data", rows(), folder, force=force).rows
     return Validation(measured, points, summary(points), absent, folder)

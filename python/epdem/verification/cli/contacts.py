@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem verify contacts`."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...base.terminal import console, show_table, status
+from ...base.terminal import status
 from ...cli.options import AsJson, Engines, Force, Out
-from ..tables import frame_table
+from .answer import answer
 
 
 def contacts(
@@ -23,15 +22,8 @@ def contacts(
 
     Default engines: embedded and liggghts. References and tolerances are in the files (docs/plastic_contacts.md).
     """
-    from ...impacts.report import records
     from ..contacts import compare
 
     with status() as progress:
         outcome = compare(files or [], engines=engine or [], out=out, force=force, progress=progress)
-    if as_json:
-        said = {"passed": outcome.passed, "folder": str(outcome.folder), "rows": records(outcome.rows)}
-        print(json.dumps(said, indent=1))
-    else:
-        show_table(console(), frame_table("errors over the tolerances of the files", outcome.rows))
-        console().print(f"table: {outcome.folder}/contacts.csv")
-    raise typer.Exit(0 if outcome.passed else 1)
+    raise answer(outcome, as_json, f"table: {outcome.folder}/contacts.csv")

@@ -26,6 +26,7 @@ def data(
     from ..measured_data import shown
     from ..measured_data import validate as run
     from ..pages import of_validation
+    from ..runner import STUDIES
 
     with status() as progress:
         result = run(sets=sets or [], engines=engine or [], chosen=law or [], out=out, force=force, progress=progress)
@@ -34,7 +35,7 @@ def data(
         document = {"rows": records(result.points), "summary": records(result.summary), "absent": result.absent}
         print(json.dumps(document | {"page": str(page)}, indent=1))
         return
-    show_table(console(), frame_table("errors against measured values; nothing is fitted", shown(result.summary)))
+    show_table(console(), frame_table(STUDIES["data"].title, shown(result.summary)))
     for name, reason in result.absent.items():
         console().print(f"left out: {name}: {reason}", soft_wrap=True)
     print(f"see {page}")

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem verify motion`."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...base.terminal import console, show_table, status
+from ...base.terminal import status
 from ...cli.options import AsJson, CasePath, Engines, Force, Laws, Out
-from ..tables import frame_table
+from .answer import answer
 
 
 def motion(
@@ -28,17 +27,10 @@ def motion(
 
     Default engines: embedded and liggghts; the first one is what the others are compared with, at 1e-9 of its force.
     """
-    from ...impacts.report import records
     from ..motion.compare import compare
 
     with status() as progress:
         outcome = compare(
             case, files=file or [], engines=engine or [], laws=law or [], out=out, force=force, progress=progress
         )
-    if as_json:
-        said = {"passed": outcome.passed, "folder": str(outcome.folder), "rows": records(outcome.rows)}
-        print(json.dumps(said, indent=1))
-    else:
-        show_table(console(), frame_table("deviations from the first engine, over its largest force", outcome.rows))
-        console().print(f"motions, forces and torques: {outcome.folder}/LAW/ENGINE/MOTION/motion.json")
-    raise typer.Exit(0 if outcome.passed else 1)
+    raise answer(outcome, as_json, f"motions, forces and torques: {outcome.folder}/LAW/ENGINE/MOTION/motion.json")

@@ -9,9 +9,7 @@ from ...base import rendering as decks
 from ...engines.lammps import launcher
 from ...engines.lammps.engine import ImpactDeck, Lammps
 from ...impacts.engine import check_features
-from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
-from ...impacts.prediction import Prediction
 from ...jobs.engine import Feature, Report, silent
 from . import predictions
 
@@ -25,15 +23,10 @@ class LammpsMdr(Lammps):
     template = "verification/lammps/impact.in.j2"
     ranks = 1
     features = frozenset({Feature.DECK, Feature.POSITIONS})
+    predict, note = staticmethod(predictions.predict_mdr), staticmethod(predictions.mdr_note)
 
     def missing(self) -> str | None:
         return launcher.missing_program()
-
-    def predict(self, x: Experiment) -> Prediction:
-        return predictions.predict_mdr(x)
-
-    def note(self, x: Experiment) -> str:
-        return predictions.mdr_note(x)
 
     def deck(self, plan: Plan) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for cases outside mdr."""

@@ -8,9 +8,7 @@ from typing import Any
 
 from ...engines.liggghts.engine import ImpactDeck, Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
-from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
-from ...impacts.prediction import Prediction
 from ...jobs.engine import Feature, Report, silent
 from . import predictions
 
@@ -88,12 +86,7 @@ class BuiltinLuding(_OwnTheory):
     """LIGGGHTS's `luding` without adhesion and damping."""
 
     name = "liggghts-luding"
-
-    def predict(self, x: Experiment) -> Prediction:
-        return predictions.predict_luding(x)
-
-    def note(self, x: Experiment) -> str:
-        return predictions.luding_note(x)
+    predict, note = staticmethod(predictions.predict_luding), staticmethod(predictions.luding_note)
 
     def model(self, plan: Plan) -> str:
         return "luding"
@@ -114,12 +107,7 @@ class BuiltinEdinburgh(_OwnTheory):
     """LIGGGHTS's `edinburgh` without adhesion and damping."""
 
     name = "liggghts-edinburgh"
-
-    def predict(self, x: Experiment) -> Prediction:
-        return predictions.predict_edinburgh(x)
-
-    def note(self, x: Experiment) -> str:
-        return predictions.edinburgh_note(x)
+    predict, note = staticmethod(predictions.predict_edinburgh), staticmethod(predictions.edinburgh_note)
 
     def model(self, plan: Plan) -> str:
         return "edinburgh"

@@ -10,7 +10,6 @@ from ...engines.yade.classes import Material
 from ...engines.yade.engine import Anvil, ImpactDeck, Yade
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
-from ...impacts.prediction import Prediction
 from ...jobs.engine import Report, silent
 from . import predictions
 
@@ -26,16 +25,11 @@ class YadeLuding(Yade):
     laws: tuple[str, ...] | None = None
     of_classes = frozenset()
     own_law = True
+    predict, note = staticmethod(predictions.predict_luding), staticmethod(predictions.luding_note)
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
         path = super().run(job, folder, ranks=ranks, report=report)
         return replace(path, end_power=1.0)  # the force falls linearly with the overlap
-
-    def predict(self, x: Experiment) -> Prediction:
-        return predictions.predict_luding(x)
-
-    def note(self, x: Experiment) -> str:
-        return predictions.luding_note(x)
 
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
         law, wall = predictions.luding(x), math.isinf(x.target.radius)

@@ -2,22 +2,20 @@
 """Forces and torques of two spheres whose motion is prescribed, compared between engines."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
-from ...base.files import claim, results_folder, write_texts
-from ...base.paths import DEFAULT_ENGINE
-from ...base.tables import write_csv
+from ...base.files import results_folder, write_texts
 from ...case.impact import load
 from ...case.toml import named
 from ...errors import CaseError
 from ...impacts.experiment import experiment
 from ...jobs.engine import check_law, require
 from ...theory.pair import sphere_mass
+from ..runner import STUDIES, Outcome, Progress, Row, run, silent
 from .embedded import EmbeddedMotions
 from .lammps import LammpsMotions
 from .liggghts import LiggghtsMotions
@@ -27,27 +25,7 @@ from .yade import YadeMotions
 
 _TOOLS = (EmbeddedMotions, LiggghtsMotions, YadeMotions, LammpsMotions)
 ENGINES: dict[str, type[MotionEngine]] = {tool.name: tool for tool in _TOOLS}
-DEFAULT = (next(iter(ENGINES)), DEFAULT_ENGINE)
-TABLE = "motions.csv"
 FRICTION = 0.3  # of a case that has none
-TOLERANCE = 1e-9  # of the largest force
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """rows: motion, law, engine, friction, force_max [N], deviations from the first engine over its largest force.
-
-    normal: of the law's forces; force: of all forces; torque: of the torques, over the smaller radius, too.
-    turned: see `paths.objectivity`; NaN for other motions.
-    """
-
-    rows: pd.DataFrame
-    folder: Path
-
-    @property
-    def passed(self) -> bool:
-        """Whether every deviation that counts is within TOLERANCE."""
-        return not bool(self.rows["wrong"].any())
 
 
 def touch_of(case: Path, law: str | None = None) -> Touch:
@@ -82,13 +60,14 @@ def compare(
     laws: Sequence[str] = (),
     out: Path | None = None,
     force: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Outcome:
     """Run each motion (of `files`, else our own) with each law on each engine. Raises CaseError, EngineError.
 
-    Motion, forces and torques of each are in FOLDER/LAW/ENGINE/MOTION/motion.json, the rows in FOLDER/motions.csv.
+    Motion, forces and torques of each are in FOLDER/LAW/ENGINE/MOTION/motion.json, the rows in FOLDER/motions.csv:
+    motion, law, engine, friction, force_max [N], deviations from the first engine over its largest force.
     """
-    tools = [engine(name) for name in dict.fromkeys(engines or DEFAULT)]
+    tools = STUDIES["motion"].tools(engines, engine)
     given = [read(path) for path in files]
     if twice := [m.name for m in given if [x.name for x in given].count(m.name) > 1]:
         raise CaseError(f"two motions have the name {twice[0]}, which their folders have; rename one file")
@@ -100,33 +79,36 @@ def compare(
             check_law(tool, touch.experiment.law.name)
     require(*tools)
     folder = results_folder(out, load(case).name, "motion")
-    rows = []
-    with claim(folder, force=force, files=[TABLE]):
-        for touch, motion in runs:
-            first: Loads | None = None
-            for tool in tools:
-                law = touch.experiment.law.name
-                progress(f"{motion.name}, {law}, {tool.name}")
-                place = folder / law / tool.name / motion.name
-                found = tool.loads(touch, motion, place)
-                write_texts(place, {"motion.json": text(motion.columns() | found.columns())})
-                first = first or found
-                row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": touch.tangential}
-                rows.append(row | deviations(touch, motion, found, first))
-        table = pd.DataFrame(rows)
-        write_csv(folder / TABLE, table)
-    return Outcome(table, folder)
+    return run("motion", _rows(runs, tools, folder, progress), folder, force=force)
 
 
-def deviations(touch: Touch, motion: Motion, found: Loads, first: Loads) -> dict[str, float | bool]:
-    """How far forces and torques lie from the first ones; see `Outcome`."""
+def _rows(
+    runs: list[tuple[Touch, Motion]], tools: list[MotionEngine], folder: Path, progress: Progress
+) -> Iterator[Row]:
+    for touch, motion in runs:
+        first: Loads | None = None
+        for tool in tools:
+            law = touch.experiment.law.name
+            progress(f"{motion.name}, {law}, {tool.name}")
+            place = folder / law / tool.name / motion.name
+            found = tool.loads(touch, motion, place)
+            write_texts(place, {"motion.json": text(motion.columns() | found.columns())})
+            first = first or found
+            row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": touch.tangential}
+            yield row | {"force_max": found.peak} | deviations(touch, motion, found, first)
+
+
+def deviations(touch: Touch, motion: Motion, found: Loads, first: Loads) -> dict[str, float]:
+    """How far loads lie from the first ones, over the largest force of these.
+
+    normal: of the law's forces; force: of all forces; torque: of the torques, over the smaller radius, too.
+    turned: see `paths.objectivity`; NaN for other motions.
+    """
     normals, scale = unit_normals(motion), max(first.peak, 1e-300)
     off = {
         "normal": np.abs(found.along(normals) - first.along(normals)).max(),
         "force": np.linalg.norm(found.force - first.force, axis=2).max(),
         "torque": np.linalg.norm(found.torque - first.torque, axis=2).max() / min(touch.radii),
     }
-    shares = {name: float(value / scale) for name, value in off.items()}
-    wrong = any(not share <= TOLERANCE for share in shares.values())
     turned = objectivity(found) if motion.name == rigid_rotation.__name__ else math.nan
-    return {"force_max": found.peak} | shares | {"turned": turned, "wrong": wrong}
+    return {name: float(value / scale) for name, value in off.items()} | {"turned": turned}

@@ -4,6 +4,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,61 +12,73 @@ from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines import input_script
 from ...engines.liggghts import dump, launcher
-from ...engines.liggghts.engine import ImpactDeck, Liggghts
+from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import per_pair, tangential
 from ...errors import EngineError
+from ...laws.library import Array
 from .prescribed import Loads, Motion, Touch, summary
 
 DECK, STEPS, DATA = "in.motion", "motion.steps", "motion.data"
-SET = [f"{name}{axis}" for name in ("", "v", "omega") for axis in "xyz"]
+SET = " ".join(f"{name}{axis} {{}}" for name in ("", "v", "omega") for axis in "xyz")
 
 
 class LiggghtsMotions:
-    """LIGGGHTS with a law and a friction of ours."""
+    """LIGGGHTS with a law and a friction of ours. words: of `set` for place, velocity and spin of a sphere."""
 
     name = Liggghts.name
     laws: tuple[str, ...] | None = None
     features = Liggghts.features
+    template, path, words = "verification/liggghts/motion.in.j2", "path.bin", SET
+    launcher: Any = launcher
 
     def missing(self) -> str | None:
-        return launcher.missing()
+        reason: str | None = self.launcher.missing()
+        return reason
 
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
-        write_texts(folder, files(touch, motion))
-        path = folder / "path.bin"
+        write_texts(folder, self.files(touch, motion))
+        path = folder / self.path
         path.unlink(missing_ok=True)
-        launcher.run(DECK, folder, seconds=120 + 0.01 * motion.steps)
+        self.launcher.run(DECK, folder, seconds=120 + 0.01 * motion.steps)
+        found = self.read(path, motion.steps)[1:].reshape(motion.steps, 2, 2, 3)  # the first frame is the start
+        return Loads(found[:, :, 0], found[:, :, 1])
+
+    def deck(self, touch: Touch, motion: Motion) -> Any:
+        """The deck of a motion. Raises CaseError for what the engine cannot do."""
+        plain = Liggghts().deck(touch.plan(motion))
+        friction = per_pair("coefficientFriction", len(plain.types), touch.friction, "-")
+        contact = replace(
+            plain.contact,
+            has_history=True,
+            properties=(*plain.contact.properties, friction),
+            tangential=tangential(touch.tangential),
+        )
+        return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), contact=contact)
+
+    def read(self, path: Path, steps: int) -> Array:
+        """Forces and torques of the start and of every step. Raises EngineError."""
         try:
-            found = dump.series(path)[1:].reshape(motion.steps, 2, 2, 3)  # the first frame is the start
+            return dump.series(path).reshape(steps + 1, 2, -1)
         except ValueError as error:
             raise EngineError(
                 f"{path}: the run left an incomplete dump ({error}); see {launcher.OUT} beside it"
             ) from None
-        return Loads(found[:, :, 0], found[:, :, 1])
 
+    def files(self, touch: Touch, motion: Motion) -> dict[str, str]:
+        """Deck, start and steps of a motion by name; they run by hand in one folder. Raises CaseError."""
+        deck = replace(self.deck(touch, motion), data=DATA, path=self.path)
+        return {
+            DECK: decks.render(self.template, deck=deck, steps=STEPS),
+            STEPS: "".join(self._steps(motion)),
+            DATA: data(touch, motion, len(deck.types)),
+        }
 
-def deck(touch: Touch, motion: Motion) -> ImpactDeck:
-    """The deck of a motion. Raises CaseError for what LIGGGHTS cannot do."""
-    plain = Liggghts().deck(touch.plan(motion))
-    friction = per_pair("coefficientFriction", len(plain.types), touch.friction, "-")
-    contact = replace(
-        plain.contact,
-        has_history=True,
-        properties=(*plain.contact.properties, friction),
-        tangential=tangential(touch.tangential),
-    )
-    head = replace(plain.head, summary=summary(touch, motion))
-    return replace(plain, head=head, contact=contact, data=DATA, path="path.bin")
-
-
-def files(touch: Touch, motion: Motion) -> dict[str, str]:
-    """Deck, start and steps of a motion by name; they run by hand in one folder. Raises CaseError."""
-    d = deck(touch, motion)
-    return {
-        DECK: decks.render("verification/liggghts/motion.in.j2", deck=d, steps=STEPS),
-        STEPS: "".join(_steps(motion)),
-        DATA: data(touch, motion, len(d.types)),
-    }
+    def _steps(self, motion: Motion) -> Iterator[str]:
+        table = np.concatenate([motion.place, motion.velocity, motion.spin], axis=2).tolist()
+        for bodies in table:
+            for id, values in enumerate(bodies, 1):
+                yield f"set atom {id} {self.words.format(*map(decks.number, values))}\n"
+            yield "run 1 pre no post no\n"
 
 
 def data(touch: Touch, motion: Motion, types: int) -> str:
@@ -78,12 +91,3 @@ def data(touch: Touch, motion: Motion, types: int) -> str:
         for k, (b, n) in enumerate(((x.body, 1), (x.target, types)))
     ]
     return input_script.text(motion.name, types, box, spheres)
-
-
-def _steps(motion: Motion) -> Iterator[str]:
-    table = np.concatenate([motion.place, motion.velocity, motion.spin], axis=2).tolist()
-    for bodies in table:
-        for id, values in enumerate(bodies, 1):
-            words = " ".join(f"{name} {decks.number(value)}" for name, value in zip(SET, values, strict=True))
-            yield f"set atom {id} {words}\n"
-        yield "run 1 pre no post no\n"

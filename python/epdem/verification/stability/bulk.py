@@ -4,8 +4,6 @@
 import shutil
 import tempfile
 import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -23,16 +21,12 @@ from ...scenes.plan import ScenePlan, plan
 from ...scenes.run import run_plan
 from ...scenes.timestep import stable_step
 from ...theory.backbones import LAWS
+from ..runner import STUDIES, Progress, Row, silent
 
 SCENES: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 RADIUS, DENSITY, POISSON = 5e-3, 7800.0, 0.3
 SHARE = 0.02  # of the stability limit at the highest speed: e_n within 1e-4
 FRAMES = 40
-# Of the energy brought in, what the total may move: velocity Verlet lets the energy of a contact in progress swing by
-# (omega dt)^2/4 = share^2 of the stability limit, 4e-4 at 2 %.
-SWING = 4e-4
-GROWTH = 1e6  # by which a difference may grow from frame to frame: exponential, no jump
-AGREE = 0.02  # of the kinetic energy, in which ranks may differ when paths have nothing in common any more
 
 
 def _spheres(about: dict[str, Any], lattice: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -126,25 +120,6 @@ def with_step(case: SceneCase, time_step: float) -> ScenePlan:
     return plan(case.model_copy(update={"numerics": case.numerics.model_copy(update={"time_step": time_step})}))
 
 
-@dataclass
-class BulkVerdict:
-    """One scene with one law. Energies over the energy brought in, differences over the radius."""
-
-    scene: str
-    law: str
-    spheres: int
-    steps: int
-    lost: int
-    rise: float  # largest rise of the total energy, plastic work included, between two frames
-    off: float  # largest distance of the total from that at the start
-    plastic: float  # work lost for good
-    first_difference: float  # between 1 and 2 ranks, largest over the spheres, a quarter through the scene
-    last_difference: float
-    energy_difference: float
-    passed: bool = True
-    reason: str = ""
-
-
 def differences(one: pd.DataFrame, two: pd.DataFrame) -> np.ndarray:
     """Largest distance of the same sphere in two runs, over the radius, per frame."""
     places = [t.set_index(["step", "id"])[["x", "y", "z"]] for t in (one, two)]
@@ -165,52 +140,48 @@ def balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return table
 
 
-def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int = 2) -> BulkVerdict:
-    """Run a scene on 1 and on `ranks` ranks and check it. Raises EngineError if the engine fails."""
+def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int = 2) -> Row:
+    """Run a scene on 1 and on `ranks` ranks and judge it. Raises EngineError if the engine fails.
+
+    rise: largest rise of the total energy, plastic work included, between two frames; off: largest distance of the
+    total from that at the start; plastic: work lost for good, all over the energy brought in. first_difference,
+    last_difference: between 1 and 2 ranks, largest over the spheres, over the radius, a quarter through the scene and
+    at the end; growth: the largest from frame to frame.
+    """
     p = with_step(case, SHARE * limit(case))
     one = run_plan(p, tool, folder)
     table = balance(p, one)
     frames = one["particles"], run_plan(p, tool, folder / "ranks", ranks=ranks)["particles"]
-    last = frames[0]["step"].max()
     brought = table["kinetic"].iloc[0] + table["work"].iloc[-1]
     apart = differences(*frames)
-    ends = [frame[frame["step"] == last] for frame in frames]
+    ends = [frame[frame["step"] == frames[0]["step"].max()] for frame in frames]
     kinetic = [(0.5 * end["mass"] * (end[["vx", "vy", "vz"]] ** 2).sum(axis=1)).sum() for end in ends]
     count = len(case.parts.table)
-    v = BulkVerdict(
-        case.name,
-        case.law.name,
-        count,
-        p.steps,
-        count - len(ends[0]),
-        float(table["balance"].diff().max() / brought),
-        float(table["balance"].abs().max() / brought),
-        float(table["plastic"].iloc[-1] / brought),
-        float(apart[len(apart) // 4]),
-        float(apart[-1]),
-        float(abs(kinetic[1] / kinetic[0] - 1)),
+    return STUDIES["bulk"].judged(
+        {
+            "scene": case.name,
+            "law": case.law.name,
+            "spheres": count,
+            "steps": p.steps,
+            "lost": count - len(ends[0]),
+            "rise": float(table["balance"].diff().max() / brought),
+            "off": float(table["balance"].abs().max() / brought),
+            "plastic": float(table["plastic"].iloc[-1] / brought),
+            "first_difference": float(apart[len(apart) // 4]),
+            "last_difference": float(apart[-1]),
+            "growth": float((apart[1:] / np.maximum(apart[:-1], 1e-16)).max()),
+            "energy_difference": float(abs(kinetic[1] / kinetic[0] - 1)),
+        }
     )
-    growth = apart[1:] / np.maximum(apart[:-1], 1e-16)
-    reasons = {
-        f"{v.lost} spheres lost": not v.lost,
-        f"total energy rises by {v.rise:.2g}": v.rise <= SWING,
-        f"total energy is off by {v.off:.2g}": v.off <= SWING,
-        f"ranks part by a factor {growth.max():.2g} from one frame to the next": growth.max() <= GROWTH,
-        f"kinetic energies of the ranks differ by {v.energy_difference:.2g}": v.energy_difference <= AGREE,
-    }
-    v.reason = "; ".join(reason for reason, holds in reasons.items() if not holds)
-    v.passed = not v.reason
-    return v
 
 
-def run(laws: list[str], tool: SceneEngine, *, progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:
-    """The verdicts on every scene with every law, one row each. Raises EngineError."""
+def run(laws: list[str], tool: SceneEngine, *, progress: Progress = silent) -> pd.DataFrame:
+    """Every scene with every law, one row each. Raises EngineError."""
     rows = []
     with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
         for name, law in product(SCENES, laws):
             progress(f"{name}, {law}")
-            case = scene_case(name, law, Path(scratch))
-            rows.append(vars(judge_scene(case, tool, Path(scratch))))
+            rows.append(judge_scene(scene_case(name, law, Path(scratch)), tool, Path(scratch)))
             shutil.rmtree(scratch)
             Path(scratch).mkdir()
     return pd.DataFrame(rows)

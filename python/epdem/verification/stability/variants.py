@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """An impact's deck made into another one: a second wall above the sphere, or a sphere carried up and down."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,6 @@ from ...engines.yade.engine import Yade
 from ...errors import EngineError
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
-from . import edits_liggghts, edits_yade
-from .edits import Edit, Edits
 from .running import Setting
 from .sampling import PositionSampler
 
@@ -19,11 +18,60 @@ CYCLE = 64  # samples of a cycle of overlaps: a triangle, up in the first half
 LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that end lose their history
 
 
-def edits(sampler: PositionSampler) -> Edits:
+@dataclass(frozen=True)
+class Edit:
+    """`lines` after, or `instead` of, the one line of a deck that begins with `start`."""
+
+    start: str
+    lines: tuple[str, ...]
+    instead: bool = False
+
+
+class LiggghtsEdits:
+    """Edits of LIGGGHTS's deck. unknown: samples at the start that the history of a contact does not know.
+
+    LIGGGHTS evaluates the contacts at t = 0 without storing their history.
+    """
+
+    deck, wall, unknown = "in.impact", "fix target all wall/gran", 1
+
+    def second_wall(self, line: str, z: float) -> str:
+        """The line of a second wall at height z [m] from that of the wall at height 0."""
+        return line.replace("fix target", "fix ceiling").replace("zplane 0.0", f"zplane {z!r}")
+
+    def carry(self, place: float, rise: float, steps: int) -> list[Edit]:
+        """Carry the sphere from `place` [m] down by `rise` [m] and back, in cycles of `steps` with the same bits."""
+        lines = (
+            f"variable at equal step-{steps}*floor(step/{steps})",
+            f"variable dz atom {-rise!r}*(1-abs(v_at/{steps // 2}-1))",
+            "variable vz atom 0",
+            "fix motion all move variable NULL NULL v_dz NULL NULL v_vz",
+        )
+        return [Edit("fix motion", lines, instead=True)]
+
+
+class YadeEdits:
+    """The same of YADE's script."""
+
+    deck, wall, unknown = "impact.py", "O.bodies.append(wall(0,", 0
+
+    def second_wall(self, line: str, z: float) -> str:
+        return line.replace("wall(0,", f"wall({z!r},")
+
+    def carry(self, place: float, rise: float, steps: int) -> list[Edit]:
+        height = f"{place!r} - {rise!r} * (1 - abs((O.iter + 1) % {steps} / {steps // 2} - 1))"
+        return [
+            Edit("states =", ("for s in states:", '    s.blockedDOFs = "xyzXYZ"')),
+            Edit("    now[2]", ("    for s in states:", f"        s.pos = (s.pos[0], s.pos[1], {height})")),
+        ]
+
+
+def edits(sampler: PositionSampler) -> LiggghtsEdits | YadeEdits:
     """The edits of an engine's deck. Raises EngineError for an engine without."""
-    for kind, known in ((Liggghts, edits_liggghts.EDITS), (Yade, edits_yade.EDITS)):
-        if isinstance(sampler.engine, kind):
-            return known
+    if isinstance(sampler.engine, Liggghts):
+        return LiggghtsEdits()
+    if isinstance(sampler.engine, Yade):
+        return YadeEdits()
     raise EngineError(f"engine {sampler.name}: its deck cannot be made into another set-up")
 
 

@@ -51,19 +51,3 @@ def bridges(speed: Real) -> Array:
     """
     v = 100 * number("speed", speed)
     return np.where((v > 0.015) & (v < 5.1), 0.32 * v**-0.234, np.nan)
-
-
-DOMAINS = {
-    "8.83": "any speed > 0; 1 up to the yield speed",
-    "8.86": "fully plastic impact: where the printed e_n does not exceed 1 (above about 27 v_y0)",
-    "8.87": "fully plastic impact: where the printed e_n does not exceed 1 (above about 27 v_y0)",
-    "8.88": "v/v_y0 >= 100, v_y0 the speed of first yield at 1.60 Y",
-    "8.89": "0.015 cm/s < v < 5.1 cm/s",
-}
-
-
-def why_not(equation: str) -> str:
-    """The domain of a printed equation, in words: why it gave NaN. ValueError for an unknown number."""
-    if equation not in DOMAINS:
-        raise ValueError(f"equation = {equation!r}, must be one of {', '.join(DOMAINS)}")
-    return f"eq. {equation} holds for {DOMAINS[equation]}; outside it is NaN, not an extrapolation"
