@@ -10,7 +10,7 @@ from epdem.case.fields import Material
 from epdem.impacts.experiment import RIGID_PLANE, pair_of, plane, sphere
 from epdem.laws.strengths import default_numbers
 from epdem.theory.backbones import Cavity
-from epdem.theory.pair import strain_share
+from epdem.theory.pair import curvature_share, strain_share
 
 
 def body(make, Y, **size):
@@ -54,3 +54,13 @@ def test_the_share_of_a_pair_follows_from_its_strengths_and_the_parameters_of_th
 def test_strengths_below_zero_and_a_metal_that_softens_are_refused(numbers):
     with pytest.raises(ValueError, match="must lie in"):
         strain_share(*numbers[:2], hardening=numbers[2])
+
+
+def test_the_share_of_a_sphere_on_a_plane_is_in_its_range_for_every_radius():
+    """1/(1/R) is R but for round-off, which is above R for one radius of eight."""
+    R = np.linspace(4.5e-5, 6e-5, 1000)
+    R_star = 1.0 / (1.0 / R + 1.0 / math.inf)
+    assert (R_star > R).any() and (R_star < R).any()
+    soft, rigid = (curvature_share(w, R_star=R_star, R1=R) for w in (1.0, 0.0))
+    assert soft.max() == 1.0 and rigid.min() == 0.0
+    assert soft == pytest.approx(np.ones(1000), abs=1e-15) and rigid == pytest.approx(np.zeros(1000), abs=1e-15)

@@ -69,7 +69,8 @@ def curvature_share(share1: Real, *, R_star: Real, R1: Real) -> Array:
     body 1, 0 to 1; R_star, R1 [m] > 0, R1 infinite for a plane. ValueError outside.
     """
     w = number("share1", share1, low=0.0, high=1.0, low_ok=True)
-    return np.asarray(1 - w + (2 * w - 1) * (number("R_star", R_star) / number("R1", R1, infinite=True)))
+    curvature = number("R_star", R_star) / number("R1", R1, infinite=True)
+    return np.asarray(1 - w + (2 * w - 1) * np.minimum(curvature, 1.0))  # 1/(1/R1) can be above R1
 
 
 def sphere_mass(*, radius: Real, density: Real) -> Real:
