@@ -35,13 +35,11 @@ from ..scenes.run import run as run_scene
 from ..scenes.warnings import planned_warnings
 from ..studies.fit import Fit, Targets, fit
 from ..studies.sweep import run as study
-from ..studies.sweep.points import MOST
 from ..studies.sweep.run import SweepOutcome
-from . import arguments
+from .arguments import Count, Names, Ranks, Seed, Table, take, type_error
 from .files import Case, Scene
 
 __all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
-MOST_RANKS = 1024
 log = logging.getLogger("epdem")
 
 
@@ -120,7 +118,7 @@ def _case(given: object) -> Case | Scene:
     """A case or scene, from an object or the path of its file."""
     if isinstance(given, Case | Scene):
         return given
-    path = arguments.path("case", given, "a Case, a Scene or the path of a case file")
+    path = take("case", given, Path)
     return Scene.from_toml(path) if is_scene(read_toml(path)) else Case.from_toml(path)
 
 
@@ -146,10 +144,9 @@ def run(  # type: ignore[misc]
     `force` allows other files there.
     """
     case = _case(case)
-    engines, laws = arguments.names("engines", engines), arguments.names("laws", laws)
-    place = None if out is None else arguments.path("out", out)
-    ranks = arguments.integer("ranks", ranks, 1, MOST_RANKS)
-    options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
+    engines, laws = take("engines", engines, Names), take("laws", laws, Names)
+    ranks = take("ranks", ranks, Ranks)
+    options: dict[str, Any] = {"out": take("out", out, Path | None), "ranks": ranks, "fresh": fresh, "force": force}
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
             raise CaseError("a scene has its own law and runs on one engine")
@@ -163,8 +160,8 @@ def predict(case: Case | Path | str, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
     found = _case(case)
     if not isinstance(found, Case):
-        raise arguments.type_error("case", found, "a Case, which theory predicts; a scene has no prediction")
-    prediction = predict_experiment(experiment(found.model, None if law is None else arguments.text("law", law)))
+        raise type_error("case", found, "give a Case, which theory predicts; a scene has no prediction")
+    prediction = predict_experiment(experiment(found.model, take("law", law, str | None)))
     return _units(prediction.table(), UNITS)
 
 
@@ -178,9 +175,9 @@ def deck(
     warn: Callable[[str], None] = log.warning,
 ) -> list[Path]:
     """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
-    case, folder = _case(case), arguments.path("out", out)
-    engine = arguments.text("engine", engine)
-    law = None if law is None else arguments.text("law", law)
+    case, folder = _case(case), take("out", out, Path)
+    engine = take("engine", engine, str)
+    law = take("law", law, str | None)
     if isinstance(case, Scene) and law is not None:
         raise CaseError(f"law = {law!r}: a scene has its own law; leave it out")
     with named(case.place):
@@ -204,10 +201,10 @@ def cite(
 
     `cite(case).bibtex()` gives entries of BibTeX. Raises CaseError.
     """
-    case, laws = _case(case), arguments.names("laws", laws)
+    case, laws = _case(case), take("laws", laws, Names)
     if isinstance(case, Scene) and laws:
         raise CaseError(f"laws = {laws!r}: a scene has its own law; leave it out")
-    tools = [engine_named(name).name for name in arguments.names("engines", engines)]
+    tools = [engine_named(name).name for name in take("engines", engines, Names)]
     with named(case.place):
         return citations(case.model, laws or [case.model.law.name], tools)
 
@@ -233,17 +230,15 @@ def sweep(
     """
     planned = study.plan(
         _case(case).text,
-        arguments.mapping("settings", settings, '{"impact.body.radius": [0.001, 0.002]}'),
-        engines=arguments.names("engines", engines),
-        laws=arguments.names("laws", laws),
-        ranks=arguments.integer("ranks", ranks, 1, MOST_RANKS),
-        latin_hypercube=None
-        if latin_hypercube is None
-        else arguments.integer("latin_hypercube", latin_hypercube, 1, MOST),
-        seed=arguments.integer("seed", seed, 0, 2**63),
+        take("settings", settings, Table),
+        engines=take("engines", engines, Names),
+        laws=take("laws", laws, Names),
+        ranks=take("ranks", ranks, Ranks),
+        latin_hypercube=take("latin_hypercube", latin_hypercube, Count | None),
+        seed=take("seed", seed, Seed),
     )
-    folder = planned.default_folder if out is None else arguments.path("out", out)
-    processes = None if jobs is None else arguments.integer("jobs", jobs, 1, MOST)
+    folder = planned.default_folder if out is None else take("out", out, Path)
+    processes = take("jobs", jobs, Count | None)
     return study.run(planned, folder, jobs=processes, retry_failed=retry_failed, report=_report)
 
 
@@ -255,11 +250,9 @@ def calibrate(scene: Scene | Path | str, targets: Targets, free: Mapping[str, st
     """
     found = _case(scene)
     if not isinstance(found, Scene):
-        raise arguments.type_error(
-            "scene", found, "a Scene; `epdem calibrate` finds the strength of a law from impacts"
-        )
-    goals = arguments.mapping("targets", targets, '{"plate_force_max": "12 N"}')
-    ranges = arguments.mapping("free", free, '{"contact.friction": "0.1..0.5"}')
+        raise type_error("scene", found, "give a Scene; `epdem calibrate` finds the strength of a law from impacts")
+    goals = take("targets", targets, Table)
+    ranges = take("free", free, Table)
     return fit(found.read, goals, ranges, **({"report": _report} | options))
 
 

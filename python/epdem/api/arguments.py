@@ -1,64 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Arguments of the Python interface: each function returns one argument as the product takes it, or raises CaseError.
+"""Arguments of the Python interface: pydantic checks them, and a wrong one is one sentence with its value and type."""
 
-Every sentence names the argument, its value and its type.
-"""
-
-import operator
-import os
 import reprlib
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+
+from ..case.messages import text_of_problem
 from ..errors import CaseError
+from ..studies.sweep.points import MOST
+
+Names = Annotated[list[str], BeforeValidator(lambda given: [given] if isinstance(given, str) else given)]
+Table = dict[str, Any]
+# numpy's integers have `item`, which gives Python's
+_Whole = Annotated[int, BeforeValidator(lambda given: given.item() if hasattr(given, "item") else given)]
+Ranks = Annotated[_Whole, Field(ge=1, le=1024, strict=True)]
+Count = Annotated[_Whole, Field(ge=1, le=MOST, strict=True)]
+Seed = Annotated[_Whole, Field(ge=0, lt=2**63, strict=True)]
+
+
+def take(name: str, given: object, kind: Any) -> Any:
+    """An argument as a value of its kind. Raises CaseError."""
+    try:
+        return TypeAdapter(kind).validate_python(given)
+    except ValidationError as error:
+        problem = error.errors()[0]
+        raise type_error(name, problem["input"], text_of_problem(problem)) from None
 
 
 def type_error(name: str, given: object, wanted: str) -> CaseError:
-    """The error for an argument of a wrong type."""
-    return CaseError(f"{name} = {reprlib.repr(given)}: of type {type(given).__name__}; give {wanted}")
-
-
-def path(name: str, given: object, wanted: str = "the path of a folder") -> Path:
-    """A path, from text or a path."""
-    if not isinstance(given, str | os.PathLike):
-        raise type_error(name, given, wanted)
-    return Path(given)
-
-
-def names(name: str, given: object) -> list[str]:
-    """A list of names, from one name or a sequence of names."""
-    if isinstance(given, str):
-        return [given]
-    if not isinstance(given, Sequence):
-        raise type_error(name, given, "a name or a list of names")
-    if others := [one for one in given if not isinstance(one, str)]:
-        raise type_error(name, others[0], "a name or a list of names")
-    return [*given]
-
-
-def text(name: str, given: object, wanted: str = "a name") -> str:
-    """A text."""
-    if not isinstance(given, str):
-        raise type_error(name, given, wanted)
-    return given
-
-
-def integer(name: str, given: object, least: int, most: int) -> int:
-    """A whole number within limits, from an integer of Python or numpy."""
-    try:
-        number = operator.index(given)  # type: ignore[arg-type]
-    except TypeError:
-        raise type_error(name, given, f"a whole number from {least} to {most}") from None
-    if not least <= number <= most:
-        raise CaseError(f"{name} = {number}: must lie in [{least}, {most}]")
-    return number
-
-
-def mapping(name: str, given: object, example: str) -> dict[str, Any]:
-    """A dict with texts as keys, from any mapping; `example` stands in the message."""
-    if not isinstance(given, Mapping):
-        raise type_error(name, given, f"a dict, as {example}")
-    if others := [key for key in given if not isinstance(key, str)]:
-        raise CaseError(f"{name}: {others[0]!r} is a key of type {type(others[0]).__name__}; give a text as {example}")
-    return dict(given)
+    """The error for an argument that is no such value."""
+    return CaseError(f"{name} = {reprlib.repr(given)}: of type {type(given).__name__}; {wanted}")

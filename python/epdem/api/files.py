@@ -16,7 +16,7 @@ from ..case import scene as scene_case
 from ..case.toml import Read, text_for_anywhere
 from ..studies.sweep import points
 from ..studies.sweep.points import as_lists, with_units
-from . import arguments
+from .arguments import Table, take
 
 
 def _hashable(value: Any) -> Any:
@@ -49,14 +49,14 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
-        path = arguments.path("path", path, "the path of a case file")
+        path = take("path", path, Path)
         case = cls.__new__(cls)
         case._read(text_for_anywhere(path), path)
         return case
 
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
-        path = arguments.path("path", path, "the path of a file")
+        path = take("path", path, Path)
         with atomic(Path(path)) as temporary:
             temporary.write_text(self.text, encoding="utf-8")
         return Path(path)
@@ -67,8 +67,7 @@ class _File:
         Values and `tables` are what `Case(...)` takes: `replace(law={"name": "johnson", "yield_pressure": 2e9})`.
         Raises CaseError for a key that no case has, with the nearest one, and for a wrong value.
         """
-        example = '{"impact.body.radius": "5 mm"}'
-        changes = arguments.mapping("changes", {} if changes is None else changes, example) | tables
+        changes = take("changes", {} if changes is None else changes, Table) | tables
         document = tomlkit.parse(self.text)
         before = document.unwrap()
         data = copy.deepcopy(before)

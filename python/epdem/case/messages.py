@@ -17,6 +17,8 @@ TEXTS = {
     "float_type": "must be a number",
     "bool_type": "must be true or false",
     "list_type": "must be a list; write it in [ ]",
+    "dict_type": "must be a table of keys and values",
+    "path_type": "must be the path of a file or folder",
     "too_long": "has {actual_length} values, must have at most {max_length}",
     "less_than_equal": "must be at most {le}",
     "greater_than_equal": "must be at least {ge}",
@@ -73,6 +75,12 @@ def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
     return problems[min(range(len(problems)), key=rank)]
 
 
+def text_of_problem(problem: Any) -> str:
+    """What a value must be, for one of the errors that pydantic reports."""
+    text = TEXTS.get(problem["type"])
+    return text.format(**problem.get("ctx", {})) if text else str(problem["msg"])
+
+
 def explain(path: object, data: dict[str, Any], error: ValidationError, kind: str) -> str:
     """The sentence about `error` in `data`, which `path` holds; `kind`: the expected table, "impact" or "scene"."""
     other = "scene" if kind == "impact" else "impact"
@@ -95,7 +103,7 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
     elif problem["type"] in SHAPES[:3]:
         text = f"must be a table; write [{place}] and its keys below"
     else:
-        text = TEXTS[problem["type"]].format(**context) if problem["type"] in TEXTS else problem["msg"]
+        text = text_of_problem(problem)
     text = cut_quotes(text.removeprefix("Value error, "))
     shown = "" if value is None or isinstance(value, dict | list) else f" = {shorten(repr(value))}"
     if shown:
