@@ -22,7 +22,7 @@ SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
 ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = true"
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
-NO_FINITE_STRAIN = 1e6  # the parameter of cavity without finite_strain
+NO_FINITE_STRAIN = 1e6  # the parameter of a law without finite_strain
 PRESSURES = {  # of lattices, docs/choose.md: E/Y of 30 and 120, relative density up to 0.95
     "thornton": "0.44 to 0.95",
     "thornton_ning": "0.44 to 0.95",
@@ -45,7 +45,7 @@ def _law(p: ScenePlan) -> list[str]:
     if p.model.compaction or not any(bed.solid_height > LOOSE * bed.height for bed in p.beds):
         return []
     name = p.model.law
-    strain = name == "cavity" and p.model.parameters["finite_strain"] < NO_FINITE_STRAIN
+    strain = p.model.parameters.get("finite_strain", NO_FINITE_STRAIN) < NO_FINITE_STRAIN
     known = PRESSURES.get(f"{name}, finite_strain" if strain else name)
     text = f"has {known} times the pressure of finite elements" if known else "is not compared with finite elements"
     return [
