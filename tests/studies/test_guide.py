@@ -21,7 +21,6 @@ from test_pages import ROOT, blocks, play
 
 import epdem
 from epdem import Scene
-from epdem.base import paths
 from epdem.case import scene
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
@@ -135,17 +134,12 @@ def merged(base: dict, more: dict) -> dict:
     return base | {k: merged(base.get(k, {}), v) if isinstance(v, dict) else v for k, v in more.items()}
 
 
-def test_every_block_of_toml_is_a_case_a_part_of_one_or_a_setting(tmp_path, monkeypatch):
+def test_every_block_of_toml_is_a_case_or_a_part_of_one():
     assert len(of("toml")) >= 5
     for name, words, text in of("toml"):
-        if words == ["config"]:
-            (tmp_path / "epdem").mkdir()
-            (tmp_path / "epdem/config.toml").write_text(text)
-            monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-            assert paths.setting()
-        elif words[:1] == ["in"]:
+        if words[:1] == ["in"]:
             continue
-        elif words:
+        if words:
             given = tomllib.loads(text)
             whole = {"law": {}} if "name" in given.get("law", {}) else {}  # a law with all its keys
             data = merged(read_toml(ROOT / f"cases/{words[0]}.toml") | whole, given)

@@ -1,45 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Places of the installed parts and the user's settings; hashes of the product."""
+"""Places of the installed parts; hashes of the product."""
 
 import hashlib
 import os
 import shutil
 import sys
 import sysconfig
-import tomllib
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from ..errors import CaseError, EngineError
+from ..errors import EngineError
 from . import __version__
 
 DEFAULT_ENGINE = "liggghts"  # of every command and function that is given none
-
-
-def config_file() -> Path:
-    """Path of the user's configuration file."""
-    return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "epdem" / "config.toml"
-
-
-def setting() -> str | None:
-    """`liggghts` in [engine]; None without it or without the file. Raises CaseError for a file that is wrong."""
-    path = config_file()
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, RecursionError) as error:
-        raise CaseError(f"{path}: {error}; mend or remove it") from None
-    for name, keys in values.items():
-        if name != "engine" or not isinstance(keys, dict):
-            raise CaseError(f"{path}: {name}: is not known; there is [engine]")
-        for word, value in keys.items():
-            if word != "liggghts":
-                raise CaseError(f"{path}: engine.{word}: is not known; there is liggghts")
-            if not isinstance(value, str) or not value:
-                raise CaseError(f"{path}: engine.{word} = {value!r}, must be a text; write it in quotes")
-    return values["engine"].get("liggghts") if "engine" in values else None
 
 
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -84,11 +58,9 @@ def licences() -> tuple[Path, Path]:
 def launcher() -> Path | None:
     """The LIGGGHTS with our models that runs decks, or None.
 
-    EPDEM_LIGGGHTS names it, or [engine] liggghts in the user's configuration file; else it is our own
-    `epdem-liggghts` beside this Python or on PATH. Raises CaseError for a configuration file that is wrong.
+    EPDEM_LIGGGHTS names it; else it is our own `epdem-liggghts` beside this Python or on PATH.
     """
-    named = os.environ.get("EPDEM_LIGGGHTS") or setting()
-    if named:
+    if named := os.environ.get("EPDEM_LIGGGHTS"):
         return Path(named).expanduser().absolute()
     beside = Path(sys.executable).parent / "epdem-liggghts"
     if beside.exists():

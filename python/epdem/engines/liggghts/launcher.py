@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from ...base import paths
-from ...base.paths import config_file
 from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
 from ...jobs.engine import refuse_ranks
@@ -25,7 +24,7 @@ def missing() -> str | None:
     """None if LIGGGHTS with our models can run here, else a sentence with the command that installs it."""
     launcher = paths.launcher()
     if launcher is not None and not (launcher.is_file() and os.access(launcher, os.X_OK)):
-        return f"{launcher} is not a program; EPDEM_LIGGGHTS or {config_file()} names it: name another one, or none"
+        return f"{launcher} is not a program; EPDEM_LIGGGHTS names it: name another one, or none"
     if launcher is None:
         return f"LIGGGHTS with our models was not found; {INSTALL}"
     return None
