@@ -33,21 +33,26 @@ def silent(step: int) -> None:
     """Report nothing."""
 
 
-class Engine(Protocol[Job, Result]):
-    """One way to run a job: the plan of impacts gives a trajectory, the plan of a scene gives tables."""
+class Tool(Protocol):
+    """An engine of any kind: its laws, its features, and whether it can run here."""
 
     name: str
-    source: Source | None  # what to cite for its program; None: epdem itself
     laws: tuple[str, ...] | None  # the laws of epdem that the engine has; None: every one
-    ranks: int  # the largest number on this machine
     features: frozenset[Feature]
+
+    def missing(self) -> str | None:
+        """None if the engine can run here, else a sentence with the command that installs it."""
+
+
+class Engine(Tool, Protocol[Job, Result]):
+    """One way to run a job: the plan of impacts gives a trajectory, the plan of a scene gives tables."""
+
+    source: Source | None  # what to cite for its program; None: epdem itself
+    ranks: int  # the largest number on this machine
 
     @property
     def mpirun(self) -> str:
         """The program that starts several ranks."""
-
-    def missing(self) -> str | None:
-        """None if the engine can run here, else a sentence with the command that installs it."""
 
     def version(self) -> str:
         """One line: the version of the engine and of epdem's part in it."""
@@ -66,17 +71,6 @@ class Engine(Protocol[Job, Result]):
 
     def run(self, job: Job, folder: Path, *, ranks: int = 1, report: Report = silent) -> Result:
         """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
-
-
-class Tool(Protocol):
-    """An engine of any kind: its laws, its features, and whether it can run here."""
-
-    name: str
-    laws: tuple[str, ...] | None
-    features: frozenset[Feature]
-
-    def missing(self) -> str | None:
-        """None if it can run here, else a sentence with the command that installs it."""
 
 
 def require(*tools: Tool) -> None:
