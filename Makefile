@@ -61,7 +61,7 @@ browser:
 	@mkdir -p runs/browser
 	EPDEM_BROWSER_PICTURES=$(CURDIR)/runs/browser .venv/bin/python -m pytest tests/studies/test_browser.py -q -n 0
 
-# a scene of this duration takes more than a minute, the shortest walltime of Slurm
+# a scene of this duration takes more than half a minute, after which a job of two minutes is warned
 walltime: setup
 	EPDEM_WALLTIME="3 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
 

@@ -25,7 +25,6 @@ from reliability_faults import FAULTS
 
 from epdem.impacts import store
 from epdem.scenes import results
-from epdem.studies.sweep import table as sweep_table
 
 ROOT = Path(__file__).parents[1]
 WORK = ROOT / "runs/reliability"
@@ -87,7 +86,7 @@ def tables(kind: str, out: Path) -> dict[str, pd.DataFrame]:
     if kind == "impacts":
         return store.read(out / "results.h5").impacts
     if kind == "sweep":
-        found = sweep_table.read_sweep(out)
+        found = pd.read_csv(out / "sweep.csv")
         return {"sweep": found[[c for c in found if not c.startswith("seconds")]]}
     return {n: t for n, t in results.read(out / "results.h5").tables.items() if n != "checks"}
 

@@ -25,10 +25,6 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
         "d/all.csv",
     ),
     "soften": (["soften", "steel.toml", "-k", "10", "-o", "d/soft.toml"], "d/soft.toml"),
-    "batch script": (
-        ["sweep", "steel.toml", "--set", "impact.body.radius=1 mm", "-o", "s", "--write-script", "d/job.sh"],
-        "d/job.sh",
-    ),
 }
 
 

@@ -32,7 +32,7 @@ SENTENCES = {
     ("sweep", "steel.toml", *SET, *SET): "--set impact.body.radius: given twice; write all its values behind one",
     ("sweep", "steel.toml", *SET, "--points", "points.csv"): "impact.body.radius: the key is in points.csv too; keep",
     ("sweep", "steel.toml", "--points", "points.csv", "--latin-hypercube", "3"): "--latin-hypercube needs ranges; add",
-    ("sweep", "steel.toml", *SET, "--slurm", "time=1"): "--slurm goes with --executor slurm or --write-script",
+    ("sweep", "steel.toml", *SET, "--slurm", "time=1"): "--slurm goes with --executor slurm",
     (
         "sweep",
         "steel.toml",
@@ -41,7 +41,7 @@ SENTENCES = {
         "slurm",
         "--jobs",
         "2",
-    ): "--jobs is for --executor local; give the jobs",
+    ): "--jobs: give the jobs of a cluster by --slurm",
     ("calibrate", "hertz.toml", "--hv", "100"): "law hertz never yields; it has nothing to calibrate",
 }
 

@@ -20,7 +20,7 @@ from epdem.impacts import run as impacts_run
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
 from epdem.studies import fit, pages
-from epdem.studies.sweep import slurm
+from epdem.studies.sweep import run as sweep_run
 from epdem.verification import contacts, cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
 from epdem.verification import measured_data as validate
@@ -44,7 +44,7 @@ pair_style gran model hertz
 HYPERCUBE = ("--latin-hypercube", "2")
 SWEEP = {"given": "numerics.error=1e-2", "points": "points.csv", "latin_hypercube": "3", "seed": "2", "jobs": "1"}
 SWEEP |= {"engine": "yade", "law": "cavity", "ranks": "2", "out": "there", "dry_run": None, "retry_failed": None}
-SWEEP |= {"executor": "slurm", "slurm": "partition=p", "write_script": "job.sh", "force": None}
+SWEEP |= {"executor": "slurm", "slurm": "partition=p", "force": None}
 ONE_IMPACT = {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}
 KINDS = {  # words of a call without the option, and the value of every option
     "run impacts": (("run", "steel.toml"), RUN),
@@ -168,7 +168,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(bulk_cost, "run", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
     record(figures, "draw_all", [Path("drawn.png")])
-    record(slurm, "execute")
+    record(sweep_run, "run")
     record(fit, "fit")
     record(validate, "validate")
     return reached

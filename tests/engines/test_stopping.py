@@ -42,7 +42,7 @@ IN_FORK = "os.register_at_fork(after_in_parent=signalled)\n"
 CALL = "processes.call(['sleep', '60'], Path.cwd(), log='out')"
 STOPPED_IN = {
     "fork of a program": IN_FORK + CALL,
-    "fork of a pool": IN_FORK + "list(local.each(time.sleep, [60.0], 1))",
+    "fork of a pool": IN_FORK + "list(local.each(time.sleep, deque([60.0]), 1))",
     "start of a program": """class Late(subprocess.Popen):
     def __init__(self, *words, **options):
         super().__init__(*words, **options)
@@ -58,6 +58,7 @@ time.sleep(60.0)
 """,
 }
 SCRIPT = """import atexit, os, signal, subprocess, time
+from collections import deque
 from pathlib import Path
 from epdem.base import processes
 from epdem.studies.sweep import local

@@ -123,12 +123,14 @@ def test_clusters_that_do_not_answer(tmp_path, monkeypatch):
         slurm._living(tmp_path)
     monkeypatch.setattr(slurm, "SILENCE", -1.0)
     with says("squeue has not answered for -1 s; the jobs go on"):
-        slurm._wait(None, tmp_path, {"7": [1]}, lambda done, total: None)
+        next(slurm._wait(None, tmp_path, {"7": [1]}))
 
 
 def test_jobs_that_slurm_does_not_take(tmp_path, monkeypatch):
-    monkeypatch.setattr(slurm, "_cpus", lambda *words: (_ for _ in ()).throw(RuntimeError("no partition")))
-    monkeypatch.setattr("submitit.SlurmExecutor", lambda **named: None)
+    def refuses(**named):
+        raise RuntimeError("no partition")
+
+    monkeypatch.setattr("submitit.SlurmExecutor", refuses)
     with says("--executor slurm: the jobs were not taken: no partition"):
         slurm._submit(SimpleNamespace(name="x"), tmp_path, [1], {})
 
@@ -157,21 +159,9 @@ def test_decks_and_studies(tmp_path):
         principal([1.0, 2.0, 3.0])
 
 
-def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
+def test_folders_and_files_of_a_user(tmp_path):
     with (tmp_path / "lock").open("w+") as lock, says("another run has just ended here; run the command", CaseError):
         files._lock(tmp_path, lock)
-    config = tmp_path / "epdem/config.toml"
-    config.parent.mkdir()
-    config.write_text("a = ")
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    with says("config.toml: .*; mend or remove it", CaseError):
-        paths.setting()
-    config.write_text("[engines]\n")
-    with says(r"config.toml: engines: is not known; there is \[", CaseError):
-        paths.setting()
-    config.write_text("[engine]\nlammps = 'lmp'\n")
-    with says("config.toml: engine.lammps: is not known; there is liggghts", CaseError):
-        paths.setting()
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
     with says("no triangles, or corners that are not numbers; export it anew", CaseError):
         walls._read(tmp_path / "x.stl", "scene.wall.x.file")

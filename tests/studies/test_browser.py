@@ -16,8 +16,7 @@ import pytest
 
 from epdem.engines import engine
 from epdem.impacts.run import run
-from epdem.studies.calibrate import from_restitution
-from epdem.studies.pages import write_calibration_page, write_impacts_page
+from epdem.studies.pages import write_impacts_page
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium")
@@ -64,20 +63,6 @@ def look(page: Path, *more: str) -> subprocess.CompletedProcess[str]:
     ]
     words += [f"--user-data-dir={page.parent / 'profile'}", "--virtual-time-budget=8000", *more, f"file://{page}"]
     return subprocess.run(words, capture_output=True, text=True, timeout=120)
-
-
-def test_the_page_of_a_strength_is_drawn_and_silent(tmp_path):
-    case = ROOT / "cases/cavity_wall.toml"
-    path = write_calibration_page(case, from_restitution(case, 0.6, 5.0), tmp_path / "page")
-    look_for = """const seen = document.body.appendChild(document.createElement("pre"));
-    seen.id = "seen";
-    seen.textContent = JSON.stringify({
-      charts: document.querySelectorAll(".chart svg").length,
-      wide: document.documentElement.scrollWidth - window.innerWidth});"""
-    path.write_text(path.read_text().replace("</body>", f"<script>{look_for}</script></body>"))
-    done = look(path, "--window-size=500,900", "--dump-dom")
-    assert not re.findall(r"CONSOLE.*", done.stderr)
-    assert json.loads(re.search(r'<pre id="seen">(.*?)</pre>', done.stdout, re.S)[1]) == {"charts": 1, "wide": 0}
 
 
 @pytest.mark.parametrize(("name", "more"), [("wide", ["1200,900"]), ("phone", ["500,900", "--force-dark-mode"])])

@@ -14,7 +14,6 @@ from test_sweep_scenes import BED
 from epdem import Scene, calibrate
 from epdem.errors import CaseError, EngineError, Stopped
 from epdem.studies import fit as study
-from epdem.studies import pages
 
 pytestmark = pytest.mark.liggghts
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -133,7 +132,7 @@ def test_a_scene_that_fails_ends_the_fit_with_its_reason(place, monkeypatch, tmp
         fit(place, {"floor_load_mean": "1 N"}, DENSITY, out=tmp_path)
 
 
-def test_the_command_prints_what_the_function_finds(place, monkeypatch):
+def test_the_command_prints_what_the_function_finds(place):
     free = next(f"{key}={text}" for key, text in DENSITY.items())
     words = [EPDEM, "calibrate", "bed.toml", "--target", f"floor_load_mean={weight(20, 1700.0)!r} N", "--free", free]
     done = subprocess.run([*words, "-o", "points", "-j", "1"], cwd=place, capture_output=True, text=True)
@@ -143,10 +142,5 @@ def test_the_command_prints_what_the_function_finds(place, monkeypatch):
     assert json.loads(subprocess.check_output([*words, "-o", "points", "--json"], cwd=place))["values"] == found.values
     page = (place / "points/report.html").read_text()
     assert "epdem calibrate bed.toml" in page
-    drawn = []
-    monkeypatch.setattr(pages, "write_study_page", lambda page, folder: drawn.append(page))
-    pages.write_fit_page(found)
-    points, target = drawn[0].parts[0].panels[0].series
-    assert target.y == pytest.approx([weight(20, 1700.0)] * 2) and min(target.x) == 1000.0
-    assert len(points.x) == found.points
-    assert all(y == pytest.approx(weight(20, x), rel=0.1) for x, y in zip(points.x, points.y, strict=True))
+    assert f"{found.points} scenes" in page and found.values["materials.glass.density"] in page
+    assert 'data-chart="sweep"' in page

@@ -56,42 +56,45 @@ def calibrate(
 ) -> None:
     """Compute the strength of a law from e_n, a hardness or an indentation, or keys of a scene from its results.
 
-    A fit of a scene leaves report.html in its folder; for a strength, --out says where.
+    A fit of a scene leaves report.html in its folder.
     """
     impacts = {"e_n": e_n, "speed": speed, "measured": measured, "uncertainty": uncertainty}
     hardness = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
     curve = {"indentation": indentation}
-    of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs}
+    of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs, "out": out}
     if target or free:
         refuse_options(case, "it does not go with --target and --free", **impacts, **hardness, **curve)
-        given = {k: v for k, v in (of_scene | {"out": out, "force": force}).items() if v is not None}
+        given = {k: v for k, v in (of_scene | {"force": force}).items() if v is not None}
         _of_scene(case, target or [], free or [], given, as_json)
         return
-    refuse_options(case, "it goes with --target and --free", **of_scene)
-    if out is None:
-        refuse_options(case, "it belongs to --out", force=force)
+    refuse_options(case, "it goes with --target and --free", **of_scene, force=force)
+    from ..studies.calibrate import summary
+
     found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, hardness, indentation)
-    _of_impact(case, found, as_json, out, force)
+    print(json.dumps(vars(found), indent=1) if as_json else "\n".join(summary(found)))
 
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
     from ..studies.fit import fit
-    from ..studies.pages import write_fit_page
+    from ..studies.pages import write_sweep_page
     from ..studies.sweep.points import settings
     from .sweep import progress
 
     targets = settings(target, "--target", "plate_force_max='12 N'")
     with progress() as report:
         found = fit(case, targets, settings(free, "--free", "contact.friction=0.1..0.9"), report=report, **options)
-    page = write_fit_page(found)
-    if as_json:
-        print(json.dumps(vars(found) | {"case": str(found.case)}, indent=1))
-        return
-    for key, value in found.values.items():
-        print(f"{key} = {value}")
+    said = [f"{key} = {value}" for key, value in found.values.items()]
     for name, value in found.numbers.items():
-        print(f"  gives {name} = {value:.6g} {found.units[name]}".rstrip() + f" (target {found.targets[name]:.6g})")
-    print(f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}; see {page}")
+        said.append(
+            f"  gives {name} = {value:.6g} {found.units[name]}".rstrip() + f" (target {found.targets[name]:.6g})"
+        )
+    counts = f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}"
+    page = write_sweep_page(found.sweep, [*said, counts])
+    if as_json:
+        known = {name: value for name, value in vars(found).items() if name != "sweep"}
+        print(json.dumps(known | {"case": str(found.case)}, indent=1))
+    else:
+        print("\n".join([*said, f"{counts}; see {page}"]))
 
 
 def _from_measurement(
@@ -128,13 +131,3 @@ def _from_measurement(
         refuse_options(case, "it belongs to several e_n", uncertainty=uncertainty)
         return c.from_restitution(case, points[0][1], points[0][0])
     return c.from_restitutions(case, points, uncertainty)
-
-
-def _of_impact(case: Path, result: "Calibration", as_json: bool, out: Path | None, force: bool) -> None:
-    from ..studies.pages import sentences_of_calibration, write_calibration_page
-
-    page = write_calibration_page(case, result, out, force=force) if out else None
-    if as_json:
-        print(json.dumps(vars(result), indent=1))
-        return
-    print("\n".join(sentences_of_calibration(result)) + (f"\nsee {page}" if page else ""))

@@ -254,7 +254,6 @@ for command in (
     cli_sweep.status,
 ):
     app.command()(command)
-app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
 app.add_typer(export, name="export")
 
 

@@ -4,6 +4,8 @@
 import contextlib
 import json
 from collections.abc import Iterator
+from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,6 +22,13 @@ if TYPE_CHECKING:  # slow to import
     from ..studies.sweep.run import Report, SweepOutcome
 
 SHOWN = 20  # failed points
+
+
+class Executor(StrEnum):
+    """What runs the points of a sweep."""
+
+    LOCAL = "local"
+    SLURM = "slurm"
 
 
 def sweep(
@@ -40,21 +49,19 @@ def sweep(
     out: Out = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and print the points; nothing runs")] = False,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="run failed points again")] = False,
-    executor: Annotated[str, typer.Option(help="local, or slurm: jobs of a cluster")] = "local",
+    executor: Annotated[Executor, typer.Option(help="local, or slurm: jobs of a cluster")] = Executor.LOCAL,
     slurm: Annotated[
-        list[str] | None, typer.Option(help="partition=P,time=1:00:00,..., or a file of #SBATCH lines; repeat")
-    ] = None,
-    write_script: Annotated[
-        Path | None, typer.Option(help="write a batch script to submit by hand; nothing runs")
+        list[str] | None, typer.Option(help="parameters of sbatch, as partition=P,time=1:00:00; repeat")
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case or scene at many points; the same command again runs only missing and changed points."""
     from ..studies.pages import write_sweep_page
-    from ..studies.sweep import slurm as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan
+    from ..studies.sweep.run import run as run_points
+    from ..studies.sweep.slurm import parameters, run_jobs
 
     if seed is not None and latin_hypercube is None:
         raise CaseError("--seed goes with --latin-hypercube; leave it out")
@@ -68,25 +75,27 @@ def sweep(
         latin_hypercube=latin_hypercube,
         seed=1 if seed is None else seed,
     )
-    if dry_run or write_script:
-        reason = "nothing runs"
-        local = None if executor == "local" else executor
-        refuse_options(case, reason, executor=local, jobs=jobs if write_script else None, retry_failed=retry_failed)
-        refuse_options(
-            case, reason, json=as_json and write_script, slurm=None if write_script else slurm, force=force and dry_run
-        )
     if dry_run:
+        refuse_options(
+            case, "nothing runs", slurm=slurm, executor=executor == "slurm", retry_failed=retry_failed, force=force
+        )
         check_points(planned, range(1, len(planned.points) + 1), jobs, plans=True)
         _show_points(planned, as_json, console())
         return
-    folder = out or planned.default_folder
-    if write_script:
-        study.write_script(planned, folder, slurm or [], write_script, force=force)
-        print(f"sbatch {write_script}")
-        return
+    if executor == "slurm":
+        refuse_options(case, "give the jobs of a cluster by --slurm array_parallelism=N", jobs=jobs)
+    elif slurm:
+        raise CaseError("--slurm goes with --executor slurm")
+    by = partial(run_jobs, given=parameters(slurm or [])) if executor == "slurm" else None
     with progress() as report:
-        outcome = study.execute(
-            planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, report=report
+        outcome = run_points(
+            planned,
+            out or planned.default_folder,
+            jobs=jobs,
+            by=by,
+            retry_failed=retry_failed,
+            force=force,
+            report=report,
         )
     write_sweep_page(outcome)
     _show_outcome(outcome, as_json, console())
@@ -95,7 +104,7 @@ def sweep(
 
 def status(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder of a sweep")],
-    table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
+    table: Annotated[bool, typer.Option("--table", help="write sweep.csv of what is there")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
@@ -111,18 +120,6 @@ def status(
         print(json.dumps({name: plain(value) for name, value in state.items()}, indent=1))
     else:
         _show_status(state, console())
-
-
-def points(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder of a sweep")],
-    task: Annotated[int, typer.Option(min=1, help="this task's number")],
-    tasks: Annotated[int, typer.Option(min=1, help="how many tasks share the points")],
-) -> None:
-    """A task of a batch script: its share of the points of a sweep."""
-    from ..studies.sweep import folder as store
-    from ..studies.sweep.slurm import share, work
-
-    work(folder, share(range(1, len(store.read(folder).points) + 1), task, tasks))
 
 
 def _show_points(sweep: "Sweep", as_json: bool, screen: "Console") -> None:

@@ -124,14 +124,6 @@ def _uncalibrated(path: Path) -> _Uncalibrated:
         return _Uncalibrated(case, law_numbers(case.law.name, given), parameter)
 
 
-def experiment(path: Path, found: Calibration) -> Experiment:
-    """The impact of the case with the calibrated strength, at the measured speed or at the speed of first yield."""
-    uncalibrated = _uncalibrated(path)
-    if found.hardening_exponent is not None:
-        uncalibrated = uncalibrated.hardening(found.hardening_exponent)
-    return uncalibrated.experiment(found.value, found.speed or found.yield_speed)
-
-
 def _check(path: Path, e_n: float, speed: float) -> None:
     if not 0.0 < e_n <= HIGHEST_E_N:
         raise CaseError(f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, {HIGHEST_E_N:g}]; percent?")
@@ -312,6 +304,30 @@ def from_restitutions(
         largest_residual=float(np.abs(fit.fun).max() / scale),
         scatter=None if uncertainty else spread,
     )
+
+
+def summary(c: Calibration) -> list[str]:
+    """The strength with its interval, and the lines of the case file."""
+    lines = [f'{c.parameter} = "{c.value / 1e6:.6g} MPa"']
+    interval, more = "", ""
+    if c.hardening_exponent is not None and c.intervals is not None:
+        lines.append(f"hardening_exponent = {c.hardening_exponent:.4g}")
+        (low, high), (least, most) = c.intervals
+        interval = f" ({low / 1e6:.4g} to {high / 1e6:.4g} MPa)"
+        distribution, fits = "normal distribution", f"largest residual of e_n {c.largest_residual:.2g} standard errors"
+        if c.scatter is not None:
+            freedom = len(c.measured) - 2
+            distribution = f"Student's t, {freedom} degree{'s' if freedom > 1 else ''} of freedom"
+            fits = f"scatter of e_n about the fit {c.scatter:.2g}, to be compared with the error of the measurement"
+        more = (
+            f", hardening_exponent = {c.hardening_exponent:.4g} ({least:.3g} to {most:.3g}); {CONFIDENCE * 100:g} % "
+            f"confidence intervals, {distribution}; correlation {c.correlation:.3f}; {fits}"
+        )
+    return [
+        f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{interval}{more}; "
+        f"that is yield_stress = {c.yield_stress / 1e6:.6g} MPa, yield speed {c.yield_speed:.4g} m/s",
+        f"in the case file, under [law]: {'; '.join(lines)}",
+    ]
 
 
 def measured_restitutions(path: Path) -> list[tuple[float, float]]:

@@ -41,7 +41,7 @@ class Fit:
     """The found values of the free keys as in a case file, the numbers at these values, and the point of the sweep.
 
     `numbers` and `targets` are in SI, of these `units` ("": none); `ran` counts the scenes that ran just now, `points`
-    all that the fit needed.
+    all that the fit needed; `sweep` holds their table.
     """
 
     values: Point
@@ -51,6 +51,7 @@ class Fit:
     case: Path
     ran: int
     points: int
+    sweep: study.SweepOutcome
 
     def _repr_html_(self) -> str:
         cells = [*self.values.items()]
@@ -87,7 +88,8 @@ class _Search:
         if new:
             self.shares += new
             sweep = self.sweep
-            self.ran += study.run(sweep, self.folder, retry_failed=True, **self.options).ran
+            self.outcome = study.run(sweep, self.folder, retry_failed=True, **self.options)
+            self.ran += self.outcome.ran
             self.found += [self._numbers(sweep, n) for n in range(len(self.found) + 1, len(self.shares) + 1)]
         self.targets = self.targets or {name: self._target(name, text) for name, text in self.given.items()}
         rows = [[self._error(self.shares.index(s), name) for name in self.targets] for s in asked]
@@ -171,7 +173,7 @@ def fit(
         raise CaseError(f"{place}: {_failure_message(search, values, numbers)}")
     case = store.point_folder(search.sweep, folder, best + 1) / store.CASE
     units = {name: unit(name, base.tables) or "" for name in numbers}
-    return Fit(values, numbers, search.targets, units, case, search.ran, len(search.shares))
+    return Fit(values, numbers, search.targets, units, case, search.ran, len(search.shares), search.outcome)
 
 
 def _refuse_insensitive(search: _Search, middle: np.ndarray, tolerance: float) -> None:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages of runs, scenes, sweeps, fits and calibrations, and the parts that several pages have."""
+"""Pages of runs, scenes and sweeps, and the parts that several pages have."""
 
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,6 @@ from ..base import __version__
 from ..base.files import claim
 from ..base.paths import library_hash, product_hash
 from ..base.tables import unit_of
-from ..case.impact import load
 from ..engines import reasoned
 from ..engines.citations import citations
 from ..impacts import charts
@@ -22,11 +20,10 @@ from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
 from ..impacts.plan import Plan
-from ..impacts.prediction import predict
 from ..impacts.report import against_measured, largest_errors, mark, yielding
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
-from ..report.chart import INK, PALETTE, Axis, Chart, Panel, Series
+from ..report.chart import PALETTE, Axis, Chart, Panel, Series
 from ..report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
@@ -36,11 +33,8 @@ from ..scenes.report import charts as charts_of_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.stages import against_measured as against_measured_densities
 from ..theory.validity import SMALL_DEFORMATION
-from .calibrate import CONFIDENCE, Calibration, experiment
-from .fit import Fit
 from .sweep.folder import DONE, FAILED
 from .sweep.run import SweepOutcome
-from .sweep.table import read_sweep
 
 
 def command() -> str:
@@ -107,57 +101,6 @@ def write_impacts_page(outcome: Outcome) -> Path:
     with claim(outcome.folder, force=True):
         digest = mark(outcome, said, NAME)
         return write(outcome.folder / NAME, lambda: impacts_page(outcome, said), mark=digest)
-
-
-def write_calibration_page(case: Path, found: Calibration, folder: Path, *, force: bool = False) -> Path:
-    """Write the page of a strength that was found for a case into `folder`: the curve e_n(v) that it gives.
-
-    Raises CaseError for a folder with a page of another kind, without `force`.
-    """
-    x = experiment(case, found)
-    middle = found.speed or np.median([speed for speed, _ in found.measured] or [found.yield_speed])
-    line = replace(x, speed=np.geomspace(0.1, 100.0, 200) * middle)
-    series = [Series("theory", line.speed, predict(line).e_n)]
-    points = found.measured or (((found.speed, found.e_n),) if found.speed and found.e_n else ())
-    if points:
-        speeds, values = np.array(points).T
-        series.append(Series("measured", speeds, values, 1, None, charts.MEASURED))
-    alt = f"Coefficient of restitution of law {found.law} with {found.parameter} = {found.value:.4g} Pa against speed."
-    chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
-    bare = [
-        replace(b, yield_stress=None, hardness=None, yield_ratio=None) for b in (x.body, x.target)
-    ]  # whose own strength plays no part
-    facts = Facts("Bodies and law", _impact_facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
-    cited = Facts("What to cite", citations(load(case), [found.law], []))
-    parts: list[Part] = [chart, facts, origin({}, {}), cited]
-    said = sentences_of_calibration(found)
-    made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=command())
-    with claim(folder, force=force, files=[NAME]):
-        return write(folder / NAME, lambda: made)
-
-
-def sentences_of_calibration(c: Calibration) -> list[str]:
-    """The strength with its interval, and the lines of the case file."""
-    lines = [f'{c.parameter} = "{c.value / 1e6:.6g} MPa"']
-    interval, more = "", ""
-    if c.hardening_exponent is not None and c.intervals is not None:
-        lines.append(f"hardening_exponent = {c.hardening_exponent:.4g}")
-        (low, high), (least, most) = c.intervals
-        interval = f" ({low / 1e6:.4g} to {high / 1e6:.4g} MPa)"
-        distribution, fits = "normal distribution", f"largest residual of e_n {c.largest_residual:.2g} standard errors"
-        if c.scatter is not None:
-            freedom = len(c.measured) - 2
-            distribution = f"Student's t, {freedom} degree{'s' if freedom > 1 else ''} of freedom"
-            fits = f"scatter of e_n about the fit {c.scatter:.2g}, to be compared with the error of the measurement"
-        more = (
-            f", hardening_exponent = {c.hardening_exponent:.4g} ({least:.3g} to {most:.3g}); {CONFIDENCE * 100:g} % "
-            f"confidence intervals, {distribution}; correlation {c.correlation:.3f}; {fits}"
-        )
-    return [
-        f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{interval}{more}; "
-        f"that is yield_stress = {c.yield_stress / 1e6:.6g} MPa, yield speed {c.yield_speed:.4g} m/s",
-        f"in the case file, under [law]: {'; '.join(lines)}",
-    ]
 
 
 def impacts_page(outcome: Outcome, command: str = "") -> Page:
@@ -328,8 +271,8 @@ KINDS = ("last", "min", "max", "mean")  # numbers of one column of a scene
 PANEL_COLUMNS, MOST_PANELS = 3, 30  # of a chart
 
 
-def write_sweep_page(result: SweepOutcome) -> Path:
-    """Write the page of a sweep into its folder."""
+def write_sweep_page(result: SweepOutcome, found: Sequence[str] = ()) -> Path:
+    """Write the page of a sweep into its folder; found: sentences on what a fit has found."""
     table, sweep = result.table, result.sweep
     units = table.attrs.get("units", {})
     failed = table[table["status"] == FAILED][["point", "folder", "reason"]]
@@ -340,7 +283,7 @@ def write_sweep_page(result: SweepOutcome) -> Path:
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
     parts += [case_lines(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
     title = f"Sweep of {sweep.name}"
-    page = Page(title, [said], parts, passed=result.passed, command=command(), warnings=result.warnings)
+    page = Page(title, [said, *found], parts, passed=result.passed, command=command(), warnings=result.warnings)
     return write_study_page(page, result.folder)
 
 
@@ -411,32 +354,3 @@ def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines:
         y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
         series.append(Series(kind or "check", x, y, k, "solid" if lines else None, k))
     return series
-
-
-def write_fit_page(found: Fit) -> Path:
-    """Write the page of a fit of a scene into the folder of its points."""
-    folder = found.case.parents[2]
-    table = read_sweep(folder).dropna(subset=list(found.targets))
-    units = table.attrs.get("units", {}) | found.units
-    panels = []
-    for name, target in found.targets.items():
-        for k, key in enumerate(found.values):
-            x, y = table[key].to_numpy(float), table[name].to_numpy(float)
-            shown = [
-                Series("points", x, y, k, None, 0),
-                Series("target", [x.min(), x.max()], [target] * 2, INK, "dash"),
-            ]
-            panels.append(Panel(Axis(key, units.get(key, "")), Axis(name, units.get(name, "")), shown))
-    names = ", ".join(found.targets)
-    said = [
-        f"{', '.join(f'{key} = {value}' for key, value in found.values.items())} gives "
-        + ", ".join(f"{n} = {v:.6g} {found.units[n]} (target {found.targets[n]:.6g})" for n, v in found.numbers.items())
-        + ".",
-        f"{found.points} scenes, {found.ran} of them just now; the case with these values is {found.case}.",
-    ]
-    alt = f"{names} of every scene of the fit against the keys that it frees; the target as a dashed line."
-    charts = [Chart(f"fit{n}", "Target against key", alt, [panel]) for n, panel in enumerate(panels)]
-    rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
-    case = case_lines(found.case.read_text(encoding="utf-8"))
-    page = Page(f"Fit of {names}", said, [*charts, rows, case, origin({}, {})], command=command())
-    return write_study_page(page, folder)

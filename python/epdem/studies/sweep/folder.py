@@ -11,7 +11,6 @@ import copy
 import hashlib
 import json
 import os
-import re
 import socket
 import time
 from dataclasses import asdict, dataclass, field
@@ -69,26 +68,17 @@ class Sweep:
         return results_folder(None, f"{self.name}_sweep")
 
     @cached_property
-    def _pieces(self) -> list[str]:
-        """The case file cut at the values of the keys that the points set, each of which stands as its key."""
-        document = tomlkit.parse(self.case)
-        fillers = {key: f"epdem value {n}" for n, key in enumerate(self.points[0])}
-        for key, filler in fillers.items():
-            assign(document, key, filler)
-        keys = {f'"{filler}"': key for key, filler in fillers.items()}
-        return [keys.get(piece, piece) for piece in re.split(r'("epdem value \d+")', document.as_string())]
+    def _document(self) -> tomlkit.TOMLDocument:
+        return tomlkit.parse(self.case)
 
     def text(self, number: int) -> str:
         """The case file of a point, comments and all."""
-        point = self.points[number - 1]  # every point sets the same keys
-        if "law.name" in point or not all(isinstance(value, str | int | float) for value in point.values()):
-            document = tomlkit.parse(self.case)  # other keys may go, or tables come
-            for key, value in point.items():
-                assign(document, key, value)
-            return document.as_string()
-        pieces = self._pieces.copy()
-        pieces[1::2] = [tomlkit.item(point[key]).as_string() for key in pieces[1::2]]
-        return "".join(pieces)
+        point = self.points[number - 1]  # every point sets the same keys, unless others go with a law, or tables come
+        plain = "law.name" not in point and all(isinstance(value, str | int | float) for value in point.values())
+        document = self._document if plain else tomlkit.parse(self.case)
+        for key, value in point.items():
+            assign(document, key, value)
+        return document.as_string()
 
     def data(self, number: int) -> dict[str, Any]:
         """The TOML tables of a point's case."""
@@ -133,7 +123,7 @@ class Sweep:
         at again, and its engines run if their own inputs have changed."""
         names = names_in(self.data(number)) if self._files(self.points[number - 1]) else names_in(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
-        known = (self.text(number), self.identities[number - 1], sorted(self.versions.items()), contents)
+        known = (self.data(number), self.identities[number - 1], sorted(self.versions.items()), contents)
         return hashlib.sha256(f"{paths.product_hash()}{known!r}".encode()).hexdigest()
 
 
@@ -174,6 +164,11 @@ def record(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
         ):
             return content
     return {"state": WAITING}
+
+
+def is_finished(sweep: Sweep, folder: Path, number: int) -> bool:
+    """Whether a point is done or has failed."""
+    return record(sweep, folder, number)["state"] in (DONE, FAILED)
 
 
 def records(sweep: Sweep, folder: Path) -> list[dict[str, Any]]:

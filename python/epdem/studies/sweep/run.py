@@ -3,10 +3,12 @@
 
 import contextlib
 import errno
+import math
 import re
 import shutil
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -39,6 +41,7 @@ from .points import Point, Value, keys_of
 from .table import numbers_of
 
 SEPARATOR = " | "  # of the warnings of a row
+SHARES = 4  # of points, for each job; a start of a process takes as long as some impacts
 FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full disk
 
 
@@ -70,8 +73,8 @@ def _check_engines(sweep: Sweep, x: Experiment) -> None:
         check_plan(engine(name), p, prediction, ranks=sweep.ranks)
 
 
-def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
-    """Run a point and store its results; returns the reason of a failure, or "".
+def evaluate(sweep: Sweep, folder: Path, number: int) -> None:
+    """Run a point and store its results, or the reason of a failure.
 
     Raises OSError if results cannot be stored, and whatever stops the process; the point is then as if it had not run,
     except that a scene with restart files goes on from them.
@@ -88,9 +91,8 @@ def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
         reason = str(error) if isinstance(error, EpdemError) else f"{type(error).__name__}: {error}"
         reason = " ".join(reason.removeprefix(f"{place / store.CASE}: ").replace(f"{place}/", "").split())
         store.end(sweep, folder, number, about, rows=None, reason=reason)
-        return reason
-    store.end(sweep, folder, number, about, rows=rows)
-    return ""
+    else:
+        store.end(sweep, folder, number, about, rows=rows)
 
 
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
@@ -221,12 +223,49 @@ def plan(
     )
 
 
-def check_points(sweep: Sweep, numbers: Iterable[int], jobs: int | None = None, *, plans: bool = False) -> None:
+def shares(numbers: Sequence[int], jobs: int) -> deque[list[int]]:
+    """Points in shares of one process each: more shares than jobs, for points take unlike times."""
+    size = math.ceil(len(numbers) / (SHARES * jobs)) or 1
+    return deque(list(numbers[first : first + size]) for first in range(0, len(numbers), size))
+
+
+def check_points(sweep: Sweep, numbers: Sequence[int], jobs: int | None = None, *, plans: bool = False) -> None:
     """Raise CaseError for the first point that `check` finds wrong; nothing runs."""
-    wrong = {n: e for n, e in local.each(partial(check, sweep, plans=plans), numbers, jobs or local.cores()) if e}
+    jobs, wrong = jobs or local.cores(), dict[int, CaseError]()
+
+    def wrong_points(share: list[int]) -> dict[int, CaseError]:
+        return {n: error for n in share if (error := check(sweep, n, plans=plans))}
+
+    for share, found in local.each(wrong_points, shares(numbers, jobs), jobs):
+        wrong |= {share[0]: CaseError(f"{sweep.place(share[0])}: {found}")} if isinstance(found, local.Died) else found
     if wrong:
-        first = wrong[min(wrong)]
-        raise first if isinstance(first, CaseError) else CaseError(f"{sweep.place(min(wrong))}: {first}")
+        raise wrong[min(wrong)]
+
+
+def work(sweep: Sweep, folder: Path, numbers: Sequence[int], jobs: int) -> Iterator[int]:
+    """Run points by `jobs` processes on this machine; yields how many have just ended.
+
+    A point whose process dies is stored as failed, and the rest of its share runs in another process.
+    """
+
+    def run_points(share: list[int]) -> None:
+        for number in share:
+            evaluate(sweep, folder, number)
+
+    for number in numbers:  # of a point that failed before
+        (store.point_folder(sweep, folder, number) / store.FINISHED).unlink(missing_ok=True)
+    waiting = deque([number] for number in numbers) if sweep.scene else shares(numbers, jobs)
+    for share, found in local.each(run_points, waiting, jobs):
+        rest: list[int] = []
+        left = [n for n in share if isinstance(found, local.Died) and not store.is_finished(sweep, folder, n)]
+        if left:
+            dead, *rest = left
+            record_death(sweep, folder, dead, str(found))
+            waiting += [rest] if rest else []
+        yield len(share) - len(rest)
+
+
+Work = Callable[[Sweep, Path, list[int]], Iterator[int]]  # as `work`
 
 
 def run(
@@ -234,25 +273,25 @@ def run(
     folder: Path,
     *,
     jobs: int | None = None,
+    by: Work | None = None,
     retry_failed: bool = False,
     force: bool = False,
     report: Report = lambda done, total: None,
 ) -> SweepOutcome:
-    """Run the missing and changed points of a sweep by `jobs` processes on this machine, and write its table.
+    """Run the missing and changed points of a sweep and write its table.
 
-    Raises CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it,
-    the same call goes on where it ended.
+    by: what runs the points; None: `jobs` processes on this machine (default: as many as it has cores for). Raises
+    CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it, the same
+    call goes on where it ended.
     """
-    numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
-    check_points(sweep, numbers, jobs)
+    check_points(sweep, store.to_do(sweep, folder, retry_failed=retry_failed), jobs)
+    by = by or partial(work, jobs=jobs or max(1, local.cores() // sweep.ranks))
     with claim(folder, force=force):
         store.write(sweep, folder)
-        numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
-        report(0, len(numbers))
-        work, most = partial(evaluate, sweep, folder), max(1, local.cores() // sweep.ranks)
-        for done, (number, result) in enumerate(local.each(work, numbers, jobs or most), start=1):
-            if isinstance(result, local.Died):
-                record_death(sweep, folder, number, str(result))
+        numbers, done = store.to_do(sweep, folder, retry_failed=retry_failed), 0
+        report(done, len(numbers))
+        for ended in by(sweep, folder, numbers):
+            done += ended
             report(done, len(numbers))
         return SweepOutcome(sweep, folder, table.write(sweep, folder), len(numbers))
 

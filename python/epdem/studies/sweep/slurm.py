@@ -7,24 +7,20 @@ its walltime or preempted is queued again and goes on, and so does a sweep whose
 
 import fcntl
 import json
-import re
 import shlex
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...base.files import LOCK, atomic, claim, refuse_existing
+from ...base.files import LOCK, atomic
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
-from . import local, table
 from .folder import Sweep
-from .run import Report, SweepOutcome, check_points, evaluate, record_death
-from .run import run as run_here
+from .run import record_death, work
 
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
 POLL = 1.0  # [s] between two looks at the queue
@@ -36,39 +32,19 @@ Parameters = dict[str, str]
 KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
 SPREAD = ("nodes", "N", "ntasks", "n", "ntasks-per-node")  # one of these: the ranks of a point may lie on several nodes
 TIME = "60"  # [min] default walltime of a job
-WARNING = 90  # [s] from the signal to the end of the walltime; a third of a short one
+WARNING = 90  # [s] from the signal to the end of the walltime
 
 
 def parameters(texts: Sequence[str]) -> Parameters:
-    """`--slurm`: "partition=long,time=2:00:00", or a file with lines "#SBATCH --partition=long". Raises CaseError."""
+    """Parameters of sbatch from texts as "partition=long,time=2:00:00". Raises CaseError."""
     values: Parameters = {}
-    for text in texts:
-        if "=" not in text and Path(text).is_file():
-            lines = Path(text).read_text(encoding="utf-8").splitlines()
-            pairs = [line.removeprefix("#SBATCH").strip() for line in lines if line.startswith("#SBATCH")]
-        else:
-            pairs = text.split(",")
-        for pair in pairs:
-            name, _, value = pair.strip().removeprefix("--").partition("=")
-            if not name or name in KEPT:
-                why = "epdem sets it itself; leave it out" if name else "write NAME=VALUE, as partition=long"
-                raise CaseError(f"--slurm {pair!r}: {why}")
-            values[name] = value
+    for pair in ",".join(texts).split(",") if texts else []:
+        name, _, value = pair.strip().partition("=")
+        if not name or name in KEPT:
+            why = "epdem sets it itself; leave it out" if name else "write NAME=VALUE, as partition=long"
+            raise CaseError(f"--slurm {pair!r}: {why}")
+        values[name] = value
     return values
-
-
-def work(folder: Path, numbers: Sequence[int]) -> None:
-    """Run points of a sweep here, one after the other; a point whose process dies is stored as failed."""
-    sweep = store.read(folder)
-    wanted = set(store.to_do(sweep, folder, retry_failed=False)) & set(numbers)
-    for number, result in local.each(partial(evaluate, sweep, folder), sorted(wanted), jobs=1):
-        if isinstance(result, local.Died):
-            record_death(sweep, folder, number, str(result))
-
-
-def share(numbers: Sequence[int], task: int, tasks: int) -> list[int]:
-    """The points of one of `tasks` tasks, which are numbered from 1."""
-    return list(numbers[task - 1 :: tasks])
 
 
 class Task:
@@ -78,8 +54,10 @@ class Task:
     """
 
     def __call__(self, folder: Path, numbers: list[int]) -> None:
+        sweep = store.read(folder)
         try:
-            work(folder, numbers)
+            for _ in work(sweep, folder, [n for n in numbers if not store.is_finished(sweep, folder, n)], jobs=1):
+                pass
         except Stopped:
             while True:
                 signal.pause()
@@ -100,17 +78,18 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
             "--executor slurm needs submitit, which is not installed; pip install 'epdem[slurm]'"
         ) from None
     tasks = min(len(numbers), TASKS)
-    shares = [share(numbers, task, tasks) for task in range(1, tasks + 1)]
+    shares = [numbers[task::tasks] for task in range(tasks)]
     try:
         executor = submitit.SlurmExecutor(
             folder=folder / "slurm", max_num_timeout=1000, python=shlex.quote(sys.executable)
         )
-        extra = _cpus(sweep, given) | {"time": TIME} | {k: v or True for k, v in given.items()}
+        cpus = {} if set(SPREAD) & set(given) else {"cpus-per-task": str(sweep.ranks)}
+        extra = cpus | {"time": TIME} | {k: v or True for k, v in given.items()}
         executor.update_parameters(
             job_name=sweep.name,
             additional_parameters=extra,
             array_parallelism=TASKS,
-            signal_delay_s=_warning(given),
+            signal_delay_s=WARNING,
             srun_args=["--nodes=1", "--ntasks=1"],  # of however many nodes, one process works at the points
         )
         jobs = executor.map_array(Task(), [folder] * tasks, shares)
@@ -118,25 +97,6 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
         reason = " ".join(str(error).split())
         raise EngineError(f"--executor slurm: the jobs were not taken: {reason}") from None
     return {str(job.job_id): points for job, points in zip(jobs, shares, strict=True)}
-
-
-def _cpus(sweep: Sweep, given: Parameters) -> dict[str, Any]:
-    return {} if set(SPREAD) & set(given) else {"cpus-per-task": str(sweep.ranks)}
-
-
-def _warning(given: Parameters) -> int:
-    return min(WARNING, seconds(given.get("time", TIME)) // 3)
-
-
-def seconds(time: str) -> int:
-    """A walltime as Slurm reads it: minutes, M:S, H:M:S, D-H, D-H:M, D-H:M:S; a year if it is none of these."""
-    found = re.fullmatch(r"(?:(\d+)-)?(\d+)(?::(\d+))?(?::(\d+))?", time)
-    if not found:
-        return 365 * 86400
-    days, *parts = found.groups()
-    numbers = [int(part) for part in parts if part]
-    units = (3600, 60, 1) if days or len(numbers) == 3 else (60, 1)
-    return int(days or 0) * 86400 + sum(n * unit for n, unit in zip(numbers, units, strict=False))
 
 
 def alive(jobs: Sequence[str]) -> set[str] | None:
@@ -162,36 +122,23 @@ def ended(job: str) -> str | None:
     return f"its job {job} ended as {states[0]}" if states else f"its job {job} was cancelled"
 
 
-def run(
-    sweep: Sweep,
-    folder: Path,
-    given: Parameters,
-    *,
-    retry_failed: bool = False,
-    force: bool = False,
-    report: Report = lambda done, total: None,
-) -> SweepOutcome:
-    """Run the missing points of a sweep as jobs of Slurm, wait for their end, and write the table.
+def run_jobs(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -> Iterator[int]:
+    """Run points as jobs of Slurm and wait for their end; yields how many have ended since the last look.
 
     Ctrl-C ends the waiting alone; the same call later waits for the jobs that are still there and submits the rest. A
     point whose job ended before it is stored as failed, with the state of the job. Raises CaseError, EngineError.
     """
     folder = folder.absolute()
-    check_points(sweep, store.to_do(sweep, folder, retry_failed=retry_failed))
-    with claim(folder, force=force):
-        store.write(sweep, folder)
-        jobs = _living(folder)
-        under_way = {sweep.identities[n - 1] for points in jobs.values() for n in points if n <= len(sweep.points)}
-        numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
-        new = [n for n in numbers if sweep.identities[n - 1] not in under_way]
-        for n in new:
-            (store.point_folder(sweep, folder, n) / store.FINISHED).unlink(missing_ok=True)
-        if new:
-            jobs |= _submit(sweep, folder, new, given)
-            with atomic(folder / JOBS) as temporary:
-                temporary.write_text(json.dumps(jobs), encoding="utf-8")
-        _wait(sweep, folder, jobs, report)
-        return SweepOutcome(sweep, folder, table.write(sweep, folder), len(new))
+    jobs = _living(folder)
+    under_way = {sweep.identities[n - 1] for points in jobs.values() for n in points if n <= len(sweep.points)}
+    new = [n for n in numbers if sweep.identities[n - 1] not in under_way]
+    for n in new:  # of points that failed before
+        (store.point_folder(sweep, folder, n) / store.FINISHED).unlink(missing_ok=True)
+    if new:
+        jobs |= _submit(sweep, folder, new, given)
+        with atomic(folder / JOBS) as temporary:
+            temporary.write_text(json.dumps(jobs), encoding="utf-8")
+    yield from _wait(sweep, folder, jobs)
 
 
 def _living(folder: Path) -> dict[str, list[int]]:
@@ -205,10 +152,10 @@ def _living(folder: Path) -> dict[str, list[int]]:
     return {job: points for job, points in known.items() if job in there}
 
 
-def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report) -> None:
+def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]]) -> Iterator[int]:
     left, heard = dict(jobs), time.monotonic()
-    total = sum(map(len, jobs.values()))
     while left:
+        before = sum(map(len, left.values()))
         there = alive(list(left))  # None while the controller is away: its jobs are still there
         heard = heard if there is None else time.monotonic()
         if time.monotonic() - heard > SILENCE:
@@ -219,72 +166,12 @@ def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report
         for job in set() if there is None else set(left) - there:
             how = ended(job)
             for n in left.pop(job) if how else ():
-                state = store.record(sweep, folder, n)["state"]
-                if state not in (store.DONE, store.FAILED):
-                    when = "while it ran" if state == store.RUNNING else "before it began"
-                    record_death(sweep, folder, n, f"{how} {when}")
-        report(total - sum(map(len, left.values())), total)
+                if not store.is_finished(sweep, folder, n):
+                    began = store.record(sweep, folder, n)["state"] == store.RUNNING
+                    record_death(sweep, folder, n, f"{how} {'while it ran' if began else 'before it began'}")
+        yield before - sum(map(len, left.values()))
         if left:
             time.sleep(POLL)
-
-
-def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
-    """A batch script that runs a sweep as an array, for people who submit by hand; its tasks queue themselves again."""
-    tasks = min(len(sweep.points), TASKS)
-    head = {"job-name": sweep.name, "array": f"1-{tasks}", "time": TIME, "requeue": "", "open-mode": "append"}
-    head |= {"signal": f"B:USR2@{_warning(given)}"} | _cpus(sweep, given)
-    lines = [f"#SBATCH --{name}{'=' if value else ''}{value}" for name, value in (head | given).items()]
-    place = shlex.quote(str(folder.absolute()))
-    python = shlex.quote(sys.executable)
-    return "\n".join(
-        [
-            "#!/bin/bash",
-            *lines,
-            "# Each task runs its share of the points; what is finished does not run again.",
-            f"{python} -m epdem points {place} --task $SLURM_ARRAY_TASK_ID --tasks {tasks} &",
-            "# Shortly before its walltime ends, a task is queued again and goes on with what is missing.",
-            "trap 'scontrol requeue ${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID' USR2",
-            "trap : TERM",
-            "while wait $!; code=$?; kill -0 $! 2>/dev/null; do :; done  # a signal ends a wait, but not the task",
-            "# A task that got the signal to stop waits for its end: Slurm does not queue again what ends by itself.",
-            "[ $code -ne 130 ] || sleep infinity",
-            "exit $code",
-            "",
-        ]
-    )
-
-
-def execute(
-    sweep: Sweep,
-    folder: Path,
-    executor: str,
-    given: Sequence[str] = (),
-    *,
-    jobs: int | None = None,
-    **how: Any,
-) -> SweepOutcome:
-    """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter, `how` the options of
-    `run`. Raises CaseError."""
-    if executor == "slurm":
-        if jobs is not None:
-            raise CaseError("--jobs is for --executor local; give the jobs of a cluster by --slurm array_parallelism=N")
-        return run(sweep, folder, parameters(given), **how)
-    if executor != "local":
-        raise CaseError(f"--executor {executor!r} does not exist; there are local, slurm")
-    if given:
-        raise CaseError("--slurm goes with --executor slurm or --write-script")
-    return run_here(sweep, folder, jobs=jobs, **how)
-
-
-def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *, force: bool = False) -> None:
-    """Store the sweep in `folder` and write the batch script that runs it to `path`. Raises CaseError."""
-    refuse_existing(path, force=force, option="--write-script")
-    text = script(sweep, folder, parameters(given))
-    check_points(sweep, range(1, len(sweep.points) + 1))
-    with claim(folder, force=force):
-        store.write(sweep, folder)
-    with atomic(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
 
 
 def status(folder: Path) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""All points of a sweep in one table: sweep.csv and sweep.h5, and how they are read."""
+"""All points of a sweep in one table, sweep.csv."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -7,19 +7,16 @@ from typing import Any
 
 import pandas as pd
 
-from ...base.tables import Hdf5, open_results, read_table, write_attributes, write_csv, write_table, write_text
+from ...base.tables import write_csv
 from ...case.parts import MEASURES
 from ...case.scene import parse
 from ...case.units import to_si
-from ...errors import CaseError
 from ...impacts.comparison import UNITS
 from ...scenes.checks import CHECKS
 from ...scenes.columns import COLUMNS, unit_of_load
 from ...scenes.results import SceneResults
 from . import folder as store
 from .folder import Sweep
-
-TABLE = "sweep.h5"
 
 
 def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
@@ -69,24 +66,10 @@ def _keys(sweep: Sweep, number: int) -> dict[str, Any]:
 
 
 def write(sweep: Sweep, folder: Path) -> pd.DataFrame:
-    """Collect the table of a sweep and store it as sweep.csv and sweep.h5."""
+    """Collect the table of a sweep and store it as sweep.csv."""
     table = collect(sweep, folder)
-    stored = Hdf5()
-    write_attributes(stored.file, {"case": sweep.name})
-    write_text(stored.file, "case_text", sweep.case)
-    write_table(stored.file.create_group("sweep"), table, table.attrs["units"])
-    stored.save(folder / TABLE)
     write_csv(folder / "sweep.csv", table)
     return table
-
-
-def read_sweep(folder: Path | str) -> pd.DataFrame:
-    """The table of a sweep from its folder; see `collect`. Raises CaseError."""
-    path = Path(folder) / TABLE
-    if not path.exists():
-        raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it")
-    with open_results(path, "a table of a sweep") as file:
-        return read_table(file["sweep"])
 
 
 def numbers_of(results: SceneResults) -> dict[str, float]:
