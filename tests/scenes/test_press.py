@@ -266,5 +266,10 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     assert f"phase stage2: the inertial number v/h d sqrt(rho/P) is {number:.2g}, above 0.001" in fast
     assert f"{3.0 * 1e-3 / number:.2g} m/s is slow enough" in fast
     assert behind.startswith("1 spheres have passed wall punch")
+    data = without(press(periodic=True), "hold")
+    data["materials"]["heavy"] = data["materials"]["powder"] | {"density": "17920 kg/m^3"}
+    data["scene"]["particles"] = [{"material": name, "radius": "50 um", "share": 0.5} for name in ("powder", "heavy")]
+    both = stages.inertial_numbers(plan(parse(data)), tables["stages"])
+    assert both.to_list() == pytest.approx([math.sqrt(2.0) * number], rel=1e-12)
     slow = replace(p, phases=tuple(p.phases[:1]))
     assert stages.warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []

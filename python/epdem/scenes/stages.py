@@ -130,7 +130,7 @@ def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
     declared = p.scene.stages
     assert declared is not None
     speed = {phase.name: abs(towards(p, declared, phase)) for phase in p.phases}
-    density = min(p.case.materials[part.material].density for part in p.scene.filled)
+    density = max(p.case.materials[part.material].density for part in p.scene.filled)
     rate = stages["phase"].map(speed) / stages["height"]
     pressure = stages["pressure"].clip(lower=0.0)
     moving = stages[(rate > 0.0) & (pressure > 0.0)].index
