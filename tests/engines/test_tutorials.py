@@ -9,11 +9,14 @@ import os
 import numpy as np
 import pytest
 from plugin_decks import good
-from tutorials import STEPS, archive, rewritten, unpacked
+from tutorials import STEPS, archive, decks, rewritten, unpacked
+
+from epdem.engines.liggghts.deck_checks import check
 
 pytestmark = pytest.mark.liggghts
 SHORT = ["packing/in.packing", "heatTransfer_1/in.heatGran"]
 CHOSEN = list(STEPS) if os.environ.get("EPDEM_TUTORIALS") == "all" else SHORT
+MISSING = "LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)"
 YIELD = "fix yp all property/global yieldPressure peratomtype 1e5\n"
 
 
@@ -33,7 +36,7 @@ def rows(name, folder, model, **changes) -> np.ndarray:
 @pytest.mark.parametrize("name", CHOSEN)
 def test_a_tutorial_has_the_rows_of_hertz_and_loses_energy_where_it_yields(name, tmp_path):
     if archive() is None:
-        pytest.skip("LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)")
+        pytest.skip(MISSING)
     hertz = rows(name, tmp_path / "hertz", "hertz")
     ours = rows(name, tmp_path / "ours", "ep/hertz")
     soft = rows(name, tmp_path / "soft", "ep/thornton", extra=YIELD)
@@ -42,3 +45,11 @@ def test_a_tutorial_has_the_rows_of_hertz_and_loses_energy_where_it_yields(name,
     assert (soft[:, 0] == hertz[:, 0]).all()
     energy = [table[-1, 2] / table[-1, 1] for table in (soft, hertz)]  # of a sphere: where a bed is low, more fit in
     assert energy[0] < 0.999 * energy[1]
+
+
+def test_no_tutorial_has_an_input_that_the_check_names():
+    if archive() is None:
+        pytest.skip(MISSING)
+    found = decks()
+    assert len(found) > 20
+    assert [sentence for name, text in found.items() for sentence in check(text, name)] == []

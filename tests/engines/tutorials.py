@@ -47,6 +47,13 @@ def archive() -> Path | None:
     return kept if kept.exists() else None
 
 
+def decks() -> dict[str, str]:
+    """The text of every tutorial's deck by its name."""
+    with tarfile.open(archive()) as tar:
+        members = [m for m in tar if m.name.startswith(FOLDER) and Path(m.name).name.startswith("in.")]
+        return {m.name: tar.extractfile(m).read().decode() for m in members}
+
+
 def unpacked(name: str, folder: Path) -> str:
     """The deck `name`, its meshes beside it in `folder`."""
     place = f"{FOLDER}/{name.split('/')[0]}"

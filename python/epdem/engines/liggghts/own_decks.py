@@ -195,10 +195,6 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
         if pairs or (texts[:1] == ["fix"] and texts[3:4] == ["wall/gran"]):
             command, dropped = _converted(command, words, law, where)
             models, notes = models + 1, notes + dropped
-            if "cohesion" in texts and law.adheres:
-                raise CaseError(
-                    f"{where}: law {law.name} has its attraction already; remove cohesion, or take another law"
-                )
         elif texts[:1] == ["fix"] and texts[3:4] == ["property/global"]:
             present.add(texts[4] if len(texts) > 4 else "")
             if texts[4:6] == ["youngsModulus", "peratomtype"]:
