@@ -131,7 +131,7 @@ def test_jobs_that_slurm_does_not_take(tmp_path, monkeypatch):
         raise RuntimeError("no partition")
 
     monkeypatch.setattr("submitit.SlurmExecutor", refuses)
-    with says("--executor slurm: the jobs were not taken: no partition"):
+    with says("--slurm: the jobs were not taken: no partition"):
         slurm._submit(SimpleNamespace(name="x"), tmp_path, [1], {})
 
 

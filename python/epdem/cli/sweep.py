@@ -4,7 +4,6 @@
 import contextlib
 import json
 from collections.abc import Iterator
-from enum import StrEnum
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -22,13 +21,6 @@ if TYPE_CHECKING:  # slow to import
     from ..studies.sweep.run import Report, SweepOutcome
 
 SHOWN = 20  # failed points
-
-
-class Executor(StrEnum):
-    """What runs the points of a sweep."""
-
-    LOCAL = "local"
-    SLURM = "slurm"
 
 
 def sweep(
@@ -49,9 +41,9 @@ def sweep(
     out: Out = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and print the points; nothing runs")] = False,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="run failed points again")] = False,
-    executor: Annotated[Executor, typer.Option(help="local, or slurm: jobs of a cluster")] = Executor.LOCAL,
     slurm: Annotated[
-        list[str] | None, typer.Option(help="parameters of sbatch, as partition=P,time=1:00:00; repeat")
+        list[str] | None,
+        typer.Option(help="jobs of a cluster with these parameters of sbatch, as partition=P,time=1:00:00; repeat"),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
@@ -76,17 +68,13 @@ def sweep(
         seed=1 if seed is None else seed,
     )
     if dry_run:
-        refuse_options(
-            case, "nothing runs", slurm=slurm, executor=executor == "slurm", retry_failed=retry_failed, force=force
-        )
+        refuse_options(case, "nothing runs", slurm=slurm, retry_failed=retry_failed, force=force)
         check_points(planned, range(1, len(planned.points) + 1), jobs, plans=True)
         _show_points(planned, as_json, console())
         return
-    if executor == "slurm":
+    if slurm:
         refuse_options(case, "give the jobs of a cluster by --slurm array_parallelism=N", jobs=jobs)
-    elif slurm:
-        raise CaseError("--slurm goes with --executor slurm")
-    by = partial(run_jobs, given=parameters(slurm or [])) if executor == "slurm" else None
+    by = partial(run_jobs, given=parameters(slurm)) if slurm else None
     with progress() as report:
         outcome = run_points(
             planned,

@@ -74,9 +74,7 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
     try:
         import submitit
     except ImportError:
-        raise EngineError(
-            "--executor slurm needs submitit, which is not installed; pip install 'epdem[slurm]'"
-        ) from None
+        raise EngineError("--slurm needs submitit, which is not installed; pip install 'epdem[slurm]'") from None
     tasks = min(len(numbers), TASKS)
     shares = [numbers[task::tasks] for task in range(tasks)]
     try:
@@ -95,7 +93,7 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
         jobs = executor.map_array(Task(), [folder] * tasks, shares)
     except (RuntimeError, OSError, submitit.core.utils.FailedJobError) as error:
         reason = " ".join(str(error).split())
-        raise EngineError(f"--executor slurm: the jobs were not taken: {reason}") from None
+        raise EngineError(f"--slurm: the jobs were not taken: {reason}") from None
     return {str(job.job_id): points for job, points in zip(jobs, shares, strict=True)}
 
 
@@ -148,7 +146,7 @@ def _living(folder: Path) -> dict[str, list[int]]:
         return {}
     there = alive(list(known))
     if there is None:
-        raise EngineError("--executor slurm: squeue does not answer; is this a node of a Slurm cluster?")
+        raise EngineError("--slurm: squeue does not answer; is this a node of a Slurm cluster?")
     return {job: points for job, points in known.items() if job in there}
 
 
@@ -160,7 +158,7 @@ def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]]) -> Iterator[in
         heard = heard if there is None else time.monotonic()
         if time.monotonic() - heard > SILENCE:
             raise EngineError(
-                f"--executor slurm: squeue has not answered for {SILENCE:g} s; the jobs go on, "
+                f"--slurm: squeue has not answered for {SILENCE:g} s; the jobs go on, "
                 "and the same command later waits for them"
             )
         for job in set() if there is None else set(left) - there:
