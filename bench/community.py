@@ -25,7 +25,7 @@ import pandas as pd
 from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, curve, engine, loop
 
 from epdem.case.scene import SceneCase, parse
-from epdem.case.toml import Read
+from epdem.case.toml import LoadedCase
 from epdem.engines.liggghts import resume
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
@@ -135,11 +135,11 @@ def run(case: SceneCase, what: Liggghts, folder: Path, until: float | None = Non
     goes_on = not (folder / "results.h5").exists() and bool(resume.whole_restarts(folder))
     try:
         try:
-            return run_scene(Read(case, text, folder), what, out=folder, resume=goes_on, report=report)
+            return run_scene(LoadedCase(case, text, folder), what, out=folder, resume=goes_on, report=report)
         except CaseError:
             if not goes_on:
                 raise
-            return run_scene(Read(case, text, folder), what, out=folder, report=report)  # of another version
+            return run_scene(LoadedCase(case, text, folder), what, out=folder, report=report)  # of another version
     except Enough:
         return None
 

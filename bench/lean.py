@@ -17,7 +17,7 @@ from epdem.case import scene as scenes
 from epdem.case.toml import read_toml
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
-from epdem.engines.liggghts.scene_deck import files, memory
+from epdem.engines.liggghts.deck import files, memory
 from epdem.scenes.plan import plan
 from epdem.theory.backbones import ADHESIVE
 

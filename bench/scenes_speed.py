@@ -29,9 +29,10 @@ from epdem.base import paths, rendering
 from epdem.base.files import write_texts
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
+from epdem.engines.lammps import deck as lammps_deck
 from epdem.engines.lammps import launcher as lammps_launcher
-from epdem.engines.lammps import scene_deck as lammps_deck
-from epdem.engines.liggghts import launcher, scene_deck
+from epdem.engines.liggghts import deck as scene_deck
+from epdem.engines.liggghts import launcher
 from epdem.engines.liggghts.properties import per_pair
 from epdem.engines.liggghts.scene_parts import stl_text
 from epdem.scenes.plan import plan

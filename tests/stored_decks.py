@@ -8,7 +8,7 @@ import pytest
 
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
-from epdem.engines import reasoned
+from epdem.engines import texts_with_reasons
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import Plan, plan
 from epdem.impacts.prediction import predict
@@ -39,7 +39,7 @@ def compare(folder: Path, name: str, text: str) -> None:
 
 def reasons(job: Plan | ScenePlan) -> list[tuple[str, str, str]]:
     """(file, line, reason) of every line of a LIGGGHTS deck that does something."""
-    scripts = {name: text for name, text in reasoned("liggghts", job).items() if "in" in name.split(".")}
+    scripts = {name: text for name, text in texts_with_reasons("liggghts", job).items() if "in" in name.split(".")}
     split = [(name, *line.partition("  # ")[::2]) for name, text in scripts.items() for line in text.split("\n")]
     return [(name, line.rstrip(), reason) for name, line, reason in split if line.strip() and line[0] != "#"]
 

@@ -14,10 +14,10 @@ from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
 from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
-from epdem.engines.lammps import scene_deck as lammps_scene
-from epdem.engines.liggghts import scene_deck
+from epdem.engines.lammps import deck as lammps_scene
+from epdem.engines.liggghts import deck as scene_deck
 from epdem.engines.liggghts.engine import Liggghts
-from epdem.engines.yade import scene_deck as yade_scene
+from epdem.engines.yade import deck as yade_scene
 from epdem.engines.yade.engine import Yade
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment

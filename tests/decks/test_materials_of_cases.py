@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from epdem.case.impact import load, parse
+from epdem.case.plausibility import case_warnings
 from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
-from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.errors import CaseError
 from epdem.studies.soften import soften

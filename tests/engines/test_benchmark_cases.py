@@ -9,7 +9,7 @@ import pytest
 
 from epdem.case.scene import load
 from epdem.engines import engine
-from epdem.engines.liggghts import scene_deck
+from epdem.engines.liggghts import deck as scene_deck
 from epdem.impacts.run import run
 from epdem.scenes.plan import plan
 

@@ -12,7 +12,7 @@ from lammps_decks import needs_lammps
 
 from epdem.base.terminal import console
 from epdem.case import impact as cases
-from epdem.case.toml import Read, read_toml
+from epdem.case.toml import LoadedCase, read_toml
 from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.errors import CaseError
@@ -39,7 +39,9 @@ def data(**changes):
 
 
 def outcome(folder, engines, **changes):
-    return run(Read(cases.parse(data(**changes)), "text", "case"), engines=[engine(e) for e in engines], out=folder)
+    return run(
+        LoadedCase(cases.parse(data(**changes)), "text", "case"), engines=[engine(e) for e in engines], out=folder
+    )
 
 
 WRONG = {

@@ -11,7 +11,8 @@ from yade_native import module_folder
 from epdem.base.declarations import declarations
 from epdem.case.scene import parse
 from epdem.engines import doctor, engine
-from epdem.engines.yade import launcher, scene_deck
+from epdem.engines.yade import deck as scene_deck
+from epdem.engines.yade import launcher
 from epdem.errors import CaseError
 from epdem.impacts.measurement import measure
 from epdem.impacts.run import run as run_impacts

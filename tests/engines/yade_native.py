@@ -17,8 +17,9 @@ import numpy as np
 from epdem.base.declarations import declarations
 from epdem.cli.main import app
 from epdem.engines import sources
-from epdem.engines.yade.engine import body_tables, trajectory
+from epdem.engines.yade.deck import body_tables
 from epdem.engines.yade.launcher import environment
+from epdem.engines.yade.tables import trajectory
 from epdem.impacts.engine import Trajectory
 from epdem.impacts.plan import Plan
 

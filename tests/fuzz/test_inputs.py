@@ -17,12 +17,12 @@ from hypothesis import strategies as st
 from strategies import CASES, FILES, cases, damaged, numbers, quantities, toml, values, words
 
 from epdem.case import impact, scene
+from epdem.case.plausibility import case_warnings
 from epdem.case.toml import read_toml
-from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
 from epdem.engines.liggghts.own_decks import write
-from epdem.engines.yade import scene_deck
+from epdem.engines.yade import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan

@@ -14,7 +14,7 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
 from epdem.engines.liggghts import launcher, resume
-from epdem.engines.liggghts import scene_tables as tables
+from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 

@@ -14,7 +14,7 @@ from scene_runs import run, write_case
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import load
-from epdem.case.toml import read_toml, text_for_anywhere
+from epdem.case.toml import portable_text, read_toml
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.studies.pages import write_scene_page, write_sweep_page
@@ -79,7 +79,7 @@ def test_a_kind_of_a_user_is_swept_and_viewed(mill):
 def test_the_file_of_a_kind_counts_from_the_case_and_goes_with_it(mill, tmp_path):
     other = tmp_path / "other"
     other.mkdir()
-    (other / "case.toml").write_text(text_for_anywhere(mill))
+    (other / "case.toml").write_text(portable_text(mill))
     one, two = plan(load(mill)), plan(load(other / "case.toml"))
     assert one.scene == two.scene and read_toml(other / "case.toml")["scene"]["kind"] == str(tmp_path / "mill.toml.j2")
 

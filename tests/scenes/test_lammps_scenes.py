@@ -10,8 +10,8 @@ from test_parts_motions import PLATE, assert_the_lid_shakes_on, moved
 from engines.lammps_decks import column, lammps, needs_lammps
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
-from epdem.engines.lammps import scene_deck as lammps_scene
-from epdem.engines.yade import scene_deck as yade_scene
+from epdem.engines.lammps import deck as lammps_scene
+from epdem.engines.yade import deck as yade_scene
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan

@@ -16,10 +16,10 @@ from epdem.case.toml import read_toml
 from epdem.engines import engine, log
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
-from epdem.engines.liggghts import dump, launcher, own_decks, scene_tables
-from epdem.engines.liggghts import engine as liggghts
+from epdem.engines.liggghts import dump, launcher, own_decks
+from epdem.engines.liggghts import tables as scene_tables
 from epdem.engines.liggghts.launcher import OUT
-from epdem.engines.yade import scene_tables as yade_tables
+from epdem.engines.yade import tables as yade_tables
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Trajectory
 from epdem.impacts.experiment import experiment
@@ -27,7 +27,7 @@ from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.jobs.stage import Inputs, Stage
-from epdem.scenes import columns, run, walls
+from epdem.scenes import columns, meshes, run
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
 from epdem.verification.theory.criteria import principal
@@ -71,7 +71,7 @@ def test_dumps_of_impacts(tmp_path, monkeypatch):
         dump.local(path)
     monkeypatch.setattr(dump, "series", lambda path: np.zeros((3, 2, 3)))
     with says(r"the run left an incomplete dump \(3 frames of 2 bodies, expected .*see log.liggghts beside it"):
-        liggghts.trajectory(p, path, {})
+        scene_tables.trajectory(p, path, {})
     monkeypatch.setattr(lammps_launcher, "run", lambda *words, **named: 1.0)
     with says("path.txt: the run left an incomplete dump .*; see log.lammps beside it"):
         Lammps().run(p, tmp_path)
@@ -164,4 +164,4 @@ def test_folders_and_files_of_a_user(tmp_path):
         files._lock(tmp_path, lock)
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
     with says("no triangles, or corners that are not numbers; export it anew", CaseError):
-        walls._read(tmp_path / "x.stl", "scene.wall.x.file")
+        meshes._read(tmp_path / "x.stl", "scene.wall.x.file")

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli.main import app
-from epdem.engines.liggghts.scene_deck import deck
+from epdem.engines.liggghts.deck import deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from stored_decks import reasons

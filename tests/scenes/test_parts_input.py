@@ -16,8 +16,8 @@ from scipy import stats
 from epdem import Scene
 from epdem.case import toml
 from epdem.case.scene import load, parse
-from epdem.case.toml import named
-from epdem.engines.liggghts import scene_deck
+from epdem.case.toml import error_context
+from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
@@ -254,7 +254,7 @@ def deck_lines(data: dict) -> set[str]:
 
 def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    data = tomllib.loads(toml.text_for_anywhere(CASES / "sieve_cylinder.toml"))
+    data = tomllib.loads(toml.portable_text(CASES / "sieve_cylinder.toml"))
     assert fills(data, tmp_path / "case.toml") == fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
     assert str(CASES.parent) not in (CASES / "sieve_cylinder.toml").read_text()
 
@@ -308,7 +308,7 @@ def test_the_message_of_a_mistake_in_a_part_begins_with_file_and_key(old, tmp_pa
     (tmp_path / "parts").symlink_to(CASES / "parts")
     path = tmp_path / "bowl.toml"
     path.write_text(text.replace(old, new))
-    with pytest.raises(CaseError, match=re.escape(f"bowl.toml: {words}")), named(path):
+    with pytest.raises(CaseError, match=re.escape(f"bowl.toml: {words}")), error_context(path):
         plan(load(path))
 
 

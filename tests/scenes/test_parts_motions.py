@@ -12,7 +12,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
-from epdem.engines.liggghts import scene_tables as tables
+from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
@@ -190,13 +190,13 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     p = write_deck(parse(data), tmp_path)
     launcher.run("in.scene", tmp_path)
     ends = log.ends(tmp_path / launcher.OUT)
-    whole = tables.particles(p.ended(ends), tmp_path)
+    whole = tables.particles(p.with_ends(ends), tmp_path)
     files = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))
     for step in files:
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
         assert log.ends(tmp_path / launcher.OUT) == ends
-        assert tables.particles(p.ended(ends), tmp_path).equals(whole)
+        assert tables.particles(p.with_ends(ends), tmp_path).equals(whole)
     assert {ends["settle"], ends["more"]} <= {*files}
 
 

@@ -22,7 +22,7 @@ from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
 from epdem.engines import log, restarts
 from epdem.engines.liggghts import launcher, resume
-from epdem.engines.liggghts import scene_tables as tables
+from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
 from epdem.scenes import columns, results
 from epdem.scenes.plan import ScenePlan, plan
@@ -37,7 +37,7 @@ def short(path: Path):
 
 
 def last_frame(p: ScenePlan, folder: Path) -> np.ndarray:
-    p = p.ended(log.ends(folder / launcher.OUT)) if p.ends_early else p
+    p = p.with_ends(log.ends(folder / launcher.OUT)) if p.ends_early else p
     return tables.particles(p, folder, without=p.frame_steps(p.frames)[:-1]).to_numpy()
 
 

@@ -11,7 +11,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log, scene_engine
 from epdem.engines.lammps import launcher, resume
-from epdem.engines.lammps import scene_tables as tables
+from epdem.engines.lammps import tables as tables
 from epdem.errors import CaseError
 from epdem.scenes.engine import write_deck
 from epdem.scenes.plan import plan
@@ -56,7 +56,7 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
     out = tmp_path / launcher.OUT
     ends = log.ends(out)
     assert not log.not_reached(out) and [*ends] == [phase.name for phase in p.phases]
-    ended = p.ended(ends)
+    ended = p.with_ends(ends)
     whole = tables.particles(ended, tmp_path), tables.rows(ended, out)
     assert (whole[1]["lid_force_z"] > 0.1).any()
     steps = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))[:-1]

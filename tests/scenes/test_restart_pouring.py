@@ -11,7 +11,7 @@ from scene_runs import write_deck
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines.liggghts import launcher, resume
-from epdem.engines.liggghts import scene_tables as tables
+from epdem.engines.liggghts import tables as tables
 
 pytestmark = pytest.mark.liggghts
 COUNT = 100

@@ -16,8 +16,8 @@ from epdem.case.scene import parse
 from epdem.case.walls import LinearMove, RotateMove, VibrateMove
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.limits import overlaps
+from epdem.scenes.meshes import at_end, path
 from epdem.scenes.plan import plan
-from epdem.scenes.walls import at_end, path
 from epdem.scenes.warnings import planned_warnings
 
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["6 mm"] * 2}

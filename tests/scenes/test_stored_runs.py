@@ -12,7 +12,7 @@ from stored_runs import RUNS, STORED, data_of, planned
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
-from epdem.engines.liggghts import scene_tables
+from epdem.engines.liggghts import tables as scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
 from epdem.scenes.columns import COLUMNS, NORMAL, STRAINS, columns_of_rows, units

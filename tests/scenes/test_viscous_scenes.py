@@ -9,7 +9,7 @@ from scene_runs import run
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.engines.liggghts.scene_deck import files
+from epdem.engines.liggghts.deck import files
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.scenes.timestep import time_step

@@ -11,7 +11,7 @@ from parts_cases import BED, STEEL, parts
 from scene_runs import run, write_case
 
 from epdem.case.scene import parse
-from epdem.engines.liggghts import scene_deck
+from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 

@@ -14,8 +14,8 @@ from epdem.case.toml import read_toml
 from epdem.cli import main as cli
 from epdem.engines import log
 from epdem.engines.liggghts import launcher
-from epdem.engines.yade import scene_deck
-from epdem.engines.yade import scene_tables as yade_tables
+from epdem.engines.yade import deck as scene_deck
+from epdem.engines.yade import tables as yade_tables
 from epdem.engines.yade.engine import Yade
 from epdem.engines.yade.launcher import environment
 from epdem.errors import CaseError, EngineError

@@ -10,7 +10,7 @@ from scene_runs import run, write_case
 from test_parts_motions import FALL, PLATE, assert_the_lid_shakes_on, moved
 
 from epdem.case.scene import parse
-from epdem.engines.yade import scene_deck
+from epdem.engines.yade import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 

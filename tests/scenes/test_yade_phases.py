@@ -256,4 +256,4 @@ def test_shot_rebounds_and_leaves_with_its_energy(tmp_path):
     found = outcome.results
     assert outcome.passed, found.checks
     assert found.rows["particles"].iloc[0] == 12 > found.rows["particles"].iloc[-1]
-    assert found.energy_balance["left"].iloc[-1] > 0
+    assert found.energy_balance["lost_spheres_energy"].iloc[-1] > 0

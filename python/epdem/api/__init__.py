@@ -15,9 +15,9 @@ import pandas as pd
 
 from .. import theory
 from ..base.tables import unit_of
+from ..case.plausibility import case_warnings
 from ..case.scene import is_scene
-from ..case.toml import named, read_toml
-from ..case.warnings import case_warnings
+from ..case.toml import error_context, read_toml
 from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
 from ..engines.citations import Citations, citations
@@ -180,7 +180,7 @@ def deck(
     law = take("law", law, str | None)
     if isinstance(case, Scene) and law is not None:
         raise CaseError(f"law = {law!r}: a scene has its own law; leave it out")
-    with named(case.place):
+    with error_context(case.place):
         for sentence in case_warnings(case.model):
             warn(sentence)
         if isinstance(case, Case):
@@ -205,7 +205,7 @@ def cite(
     if isinstance(case, Scene) and laws:
         raise CaseError(f"laws = {laws!r}: a scene has its own law; leave it out")
     tools = [engine_named(name).name for name in take("engines", engines, Names)]
-    with named(case.place):
+    with error_context(case.place):
         return citations(case.model, laws or [case.model.law.name], tools)
 
 

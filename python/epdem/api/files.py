@@ -13,7 +13,7 @@ import tomlkit
 from ..base.files import atomic
 from ..case import impact as impact_case
 from ..case import scene as scene_case
-from ..case.toml import Read, text_for_anywhere
+from ..case.toml import LoadedCase, portable_text
 from ..studies.sweep import points
 from ..studies.sweep.points import as_lists, with_units
 from .arguments import Table, take
@@ -51,7 +51,7 @@ class _File:
         """The case in a file. Raises CaseError."""
         path = take("path", path, Path)
         case = cls.__new__(cls)
-        case._read(text_for_anywhere(path), path)
+        case._read(portable_text(path), path)
         return case
 
     def to_toml(self, path: Path | str) -> Path:
@@ -91,9 +91,9 @@ class _File:
         return str(self.model.name)
 
     @property
-    def read(self) -> Read:
+    def read(self) -> LoadedCase:
         """The case as runs and studies take it."""
-        return Read(self.model, self.text, self.place)
+        return LoadedCase(self.model, self.text, self.place)
 
     @property
     def title(self) -> str:

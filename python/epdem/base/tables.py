@@ -21,7 +21,7 @@ from .files import atomic
 LARGE = 5000  # values from which a column is compressed
 
 
-class Quantity(NamedTuple):
+class Column(NamedTuple):
     """The number in a column, measure or check: SI unit ("" for a plain number), and its meaning in a sentence."""
 
     unit: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What cases of impacts and scenes have in common: quantities, names, materials, law, dashpot; SI values out."""
+"""Common fields of cases of impacts and scenes: quantities, names, materials, law, dashpot; SI values out."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Self
@@ -62,7 +62,7 @@ Restitution = Annotated[
 
 
 def zero_vector() -> list[float]:
-    """A vector without length."""
+    """The vector (0, 0, 0)."""
     return [0.0, 0.0, 0.0]
 
 

@@ -85,7 +85,7 @@ def _annotation(head: dict[str, Any]) -> tuple[Any, Any]:
 
 @cache
 def keys_of(path: Path, text: str) -> type[Keys]:
-    """The model of the keys of a kind, from the text of its file. Raises ValueError for a head that is no good."""
+    """The model of the keys of a kind, from the text of its file. Raises ValueError for an invalid head."""
     head, line, below = text.partition(f"\n{BODY}\n")
     try:
         heads = tomllib.loads(head)["keys"]
@@ -99,7 +99,7 @@ def keys_of(path: Path, text: str) -> type[Keys]:
 
 
 def model_of(kind: object, folder: Path = Path()) -> type[Keys] | None:
-    """The model of the keys of a kind by its name, or by its path from `folder`; None for no kind that is known."""
+    """The model of the keys of a kind by its name, or by its path from `folder`; None for an unknown kind."""
     if not isinstance(kind, str):
         return None
     if kind.endswith(KIND):
@@ -141,8 +141,8 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-def _written(value: Any) -> Any:
-    """A value as the TOML of parts has it."""
+def _as_toml(value: Any) -> Any:
+    """A value as text of TOML."""
     match value:
         case bool():
             return str(value).lower()
@@ -155,7 +155,7 @@ def _written(value: Any) -> Any:
 
 @cache
 def _environment() -> jinja2.Environment:
-    env = jinja2.Environment(**OPTIONS, finalize=_written)
+    env = jinja2.Environment(**OPTIONS, finalize=_as_toml)
     env.globals.update(FUNCTIONS)
     return env
 

@@ -8,18 +8,18 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, Tag, model_validator
 
-from ..base.tables import Quantity as Column
+from ..base.tables import Column
 from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, zero_vector
 from .outputs import Check, Row, Stages
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
 from .walls import (
     Axis,
+    CasePhase,
     ConeWall,
     CylinderWall,
     LinearMove,
     MeshWall,
     PartName,
-    Phase,
     Place,
     PlaneWall,
     PressMove,
@@ -213,7 +213,7 @@ AnyFill = Annotated[Annotated[FileFill, Tag("with")] | Annotated[Fill, Tag("with
 
 
 class SingleSphere(Frozen):
-    """A single sphere; frozen: it stays where it is. It comes at the begin of `phase` (the first one)."""
+    """A single sphere, which comes at the begin of `phase` (the first one); frozen: at rest, without motion."""
 
     name: PartName
     material: Name
@@ -255,7 +255,7 @@ class Parts(Frozen):
     wall: list[Wall] = Field(default_factory=list, max_length=64)
     fill: list[AnyFill] = Field(default_factory=list, max_length=64)
     body: list[SingleSphere] = Field(default_factory=list, max_length=1000)
-    phase: Annotated[list[Phase], Field(min_length=1, max_length=64)]
+    phase: Annotated[list[CasePhase], Field(min_length=1, max_length=64)]
     measure: list[Measure] = Field(default_factory=list, max_length=64)
     row: list[Row] = Field(default_factory=list, max_length=64)
     check: list[Check] = Field(default_factory=list, max_length=64)
@@ -333,12 +333,12 @@ class Parts(Frozen):
 
     @property
     def planes(self) -> list[PlaneWall]:
-        """The planes that are there in every phase."""
+        """The planes of every phase."""
         return [w for w in self.wall if isinstance(w, PlaneWall) and not w.phases]
 
     @property
     def gates(self) -> list[PlaneWall]:
-        """The planes that are there in some phases only."""
+        """The planes of some phases only."""
         return [w for w in self.wall if isinstance(w, PlaneWall) and w.phases]
 
     @property
@@ -379,7 +379,7 @@ class Parts(Frozen):
 
     @property
     def drive(self) -> float:
-        """The highest speed that anything has from outside [m/s]."""
+        """The highest imposed speed [m/s]: of spheres that come, and of walls."""
         if self.highest_drive is not None:
             return self.highest_drive
         velocities = [*(s.velocity for s in self.table), *(b.velocity for b in self.body)]

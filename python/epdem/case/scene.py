@@ -28,7 +28,7 @@ from .messages import explain
 from .outputs import MeasuredDensities
 from .parts import Parts
 from .sizes import Share, context
-from .toml import KIND, named, read_toml, with_library
+from .toml import KIND, error_context, read_toml, with_library
 from .walls import PartName, Time
 
 
@@ -182,7 +182,7 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "scene")) from None
     check_law(case.law, case.materials, path)
-    with named(path):
+    with error_context(path):
         assert case.parts  # values that do not fit together are refused here
     return case
 
@@ -190,5 +190,5 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
 def load(path: Path | str) -> SceneCase:
     """The scene in a file. Raises CaseError."""
     data = read_toml(path)
-    with named(path):
+    with error_context(path):
         return parse(data, path)

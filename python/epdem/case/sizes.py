@@ -20,7 +20,7 @@ LARGEST_FILE = 200_000_000  # bytes of a file beside a case
 MOST_SIEVES = 64
 
 
-def _found(value: object, info: ValidationInfo) -> Path:
+def _find_file(value: object, info: ValidationInfo) -> Path:
     """The file that a case names, beside the case or by its whole path. Raises ValueError."""
     if isinstance(value, Path):
         return value
@@ -38,7 +38,7 @@ def _found(value: object, info: ValidationInfo) -> Path:
     return path
 
 
-FileName = Annotated[Path, BeforeValidator(_found)]
+FileName = Annotated[Path, BeforeValidator(_find_file)]
 
 
 def csv_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -141,7 +141,7 @@ def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ..
     """((opening [m], share of the mass retained on it), ...), from the largest opening, of a sieve table's file."""
     if isinstance(value, tuple):
         return value
-    path = _found(value, info)
+    path = _find_file(value, info)
     heads, lines = csv_rows(path)
     units = [re.fullmatch(r".*\[(.+)\]", head) for head in heads]
     if len(heads) != 2 or not all(units):

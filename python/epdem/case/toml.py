@@ -70,7 +70,7 @@ def read_toml(path: Path | str) -> dict[str, Any]:
 
 
 @contextlib.contextmanager
-def named(place: object) -> Iterator[None]:
+def error_context(place: object) -> Iterator[None]:
     """Errors of a case name its `place`: the file of the case, or its own name."""
     try:
         yield
@@ -82,7 +82,7 @@ def named(place: object) -> Iterator[None]:
         raise CaseError(f"{place}: {text}") from None
 
 
-class Read(NamedTuple):
+class LoadedCase(NamedTuple):
     """A case that a program has read: the Case or SceneCase, its text, and its name in messages."""
 
     model: Any
@@ -90,12 +90,12 @@ class Read(NamedTuple):
     place: object
 
 
-def names_in(data: object) -> set[str]:
+def file_names(data: object) -> set[str]:
     """The names of files in the data of a case."""
     parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     found: set[str] = set()
     for key, value in parts:
-        found |= {value} if _is_file(key, value) else names_in(value)
+        found |= {value} if _is_file(key, value) else file_names(value)
     return found
 
 
@@ -103,15 +103,15 @@ def _is_file(key: object, value: object) -> bool:
     return key in KEYS and isinstance(value, str) and (key != "kind" or value.endswith(KIND))
 
 
-def located(key: str, value: Any, folder: Path) -> Any:
-    """The value of a key of a case with whole names of its files, which count from `folder`.
+def resolve_paths(key: str, value: Any, folder: Path) -> Any:
+    """The value of a key of a case with absolute paths of its files, which are relative to `folder`.
 
     Raises CaseError for a file that is not there.
     """
     if isinstance(value, dict):
-        return {name: located(f"{key}.{name}", v, folder) for name, v in value.items()}
+        return {name: resolve_paths(f"{key}.{name}", v, folder) for name, v in value.items()}
     if isinstance(value, list):
-        return [located(f"{key}.{n}", v, folder) for n, v in enumerate(value)]
+        return [resolve_paths(f"{key}.{n}", v, folder) for n, v in enumerate(value)]
     if not _is_file(key.rpartition(".")[2], value):
         return value
     path = (folder / value).resolve()
@@ -120,7 +120,7 @@ def located(key: str, value: Any, folder: Path) -> Any:
     return str(path)
 
 
-def renamed(text: str, names: Mapping[str, Path]) -> str:
+def replace_file_names(text: str, names: Mapping[str, Path]) -> str:
     """The text of a case with other names of files."""
     for old, new in names.items():
         key = rf"(\b(?:{'|'.join(KEYS)})\"?\s*=\s*)"
@@ -129,13 +129,13 @@ def renamed(text: str, names: Mapping[str, Path]) -> str:
     return text
 
 
-def text_for_anywhere(path: Path | str) -> str:
-    """The text of a case file with whole names of its files, for a copy of it may lie in another folder.
+def portable_text(path: Path | str) -> str:
+    """The text of a case file with absolute paths of its files, valid in any folder.
 
     Raises CaseError as `read_toml` does.
     """
     text, folder = text_of(path), Path(path).parent
-    return renamed(text, {name: (folder / name).resolve() for name in names_in(tables(text, path))})
+    return replace_file_names(text, {name: (folder / name).resolve() for name in file_names(tables(text, path))})
 
 
 def strength_keys() -> tuple[str, ...]:
@@ -158,10 +158,10 @@ def with_library(data: dict[str, Any], path: object) -> dict[str, Any]:
     materials = data.get("materials")
     if not isinstance(materials, dict) or not any(isinstance(m, dict) and "from" in m for m in materials.values()):
         return data
-    return data | {"materials": {name: _filled(name, m, path) for name, m in materials.items()}}
+    return data | {"materials": {name: _fill_in(name, m, path) for name, m in materials.items()}}
 
 
-def _filled(name: str, material: Any, path: object) -> Any:
+def _fill_in(name: str, material: Any, path: object) -> Any:
     if not isinstance(material, dict) or "from" not in material:
         return material
     origin = material["from"]

@@ -79,12 +79,12 @@ def to_si(text: object, si: str) -> float:
     return value
 
 
-# Beyond these nothing in a particle simulation lies, and the laws' powers of them could leave the range of numbers.
+# Limits of particle simulations, within which the powers in the laws stay in the range of numbers.
 LIMITS = {"Pa": (1e-9, 1e30), "m": (1e-12, 1e6), "kg/m^3": (1e-9, 1e20), "m/s": (1e-30, 1e12)}
 
 
 def within_limits(x: float, si: str) -> float:
-    """x, if its size is one that is computed with. Raises ValueError."""
+    """x within LIMITS of its unit. Raises ValueError."""
     low, high = LIMITS.get(si, (0.0, math.inf))
     if x and not low <= abs(x) <= high:
         raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")

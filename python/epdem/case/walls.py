@@ -362,7 +362,7 @@ class Until(Frozen):
         return float(next(x for x in values if x is not None))
 
 
-class Phase(Frozen):
+class CasePhase(Frozen):
     """A part of the run; with `until` at most for `duration`. time_step: its own. record: whether it has frames."""
 
     name: PartName
@@ -410,11 +410,11 @@ class Phase(Frozen):
 
     @property
     def condition(self) -> Until | None:
-        """Condition that ends the phase at a step that is not known before the run."""
+        """Condition that ends the phase at a step known in the run alone."""
         return None if self.until is None or self.until.travel is not None else self.until
 
     @property
     def condition_from(self) -> float:
-        """Time in the phase from which the condition is looked at [s]."""
+        """Time in the phase from which the condition is evaluated [s]."""
         after = None if self.until is None else self.until.after
         return 0.1 * self.duration if after is None else after

@@ -55,11 +55,11 @@ def predict(
 
 def _case(case: Path, law: list[str] | None, as_json: bool) -> None:
     from ..case.impact import load
-    from ..case.toml import named
-    from ..case.warnings import case_warnings
+    from ..case.plausibility import case_warnings
+    from ..case.toml import error_context
     from ..impacts.experiment import experiment
 
-    with named(case):
+    with error_context(case):
         read = load(case)
         experiments = [experiment(read, name) for name in laws_or_own(law)]
     _show(experiments, case_warnings(read), as_json)
@@ -75,13 +75,13 @@ def _show(experiments: "list[Experiment]", warnings: list[str], as_json: bool) -
 def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -> None:
     """The time step of a case for a target error, found with the embedded engine."""
     from ..case.impact import load
-    from ..case.toml import named
+    from ..case.toml import error_context
     from ..impacts.experiment import experiment
     from ..impacts.plan import search
     from ..impacts.prediction import predict as predict_experiment
 
     searches = []
-    with status() as progress, named(case):
+    with status() as progress, error_context(case):
         for name in laws_or_own(law):
             x = experiment(load(case), name)
             progress(f"{x.name}, {x.law.name}")

@@ -61,11 +61,11 @@ def view(
     from ..base.files import refuse_existing
     from ..base.terminal import status
     from ..case.scene import load
-    from ..case.toml import named
+    from ..case.toml import error_context
     from ..scenes import pictures
     from ..scenes.plan import plan
 
-    with named(case):
+    with error_context(case):
         p = plan(load(case))
         path = out or Path(f"{p.case.name}.png")
         refuse_existing(path, force=force)

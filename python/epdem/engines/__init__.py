@@ -36,7 +36,7 @@ def scene_engine(name: str) -> SceneEngine:
     return SCENES[name]()
 
 
-def reasoned(name: str, job: Plan | ScenePlan) -> dict[str, str]:
+def texts_with_reasons(name: str, job: Plan | ScenePlan) -> dict[str, str]:
     """The text files of a deck with the reason of each line as its comment; empty for templates without reasons."""
     if name != DEFAULT_ENGINE:
         return {}
@@ -44,4 +44,13 @@ def reasoned(name: str, job: Plan | ScenePlan) -> dict[str, str]:
         return texts(engine(name), job) if isinstance(job, Plan) else texts(scene_engine(name), job)
 
 
-__all__ = ["DEFAULT_ENGINE", "ENGINES", "SCENES", "ImpactEngine", "Trajectory", "engine", "reasoned", "scene_engine"]
+__all__ = [
+    "DEFAULT_ENGINE",
+    "ENGINES",
+    "SCENES",
+    "ImpactEngine",
+    "Trajectory",
+    "engine",
+    "scene_engine",
+    "texts_with_reasons",
+]

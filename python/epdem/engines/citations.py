@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What to cite for a case, its laws and engines."""
+"""Sources to cite for a case, its laws and engines."""
 
 from collections.abc import Sequence
 

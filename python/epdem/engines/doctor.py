@@ -20,7 +20,7 @@ from .liggghts import launcher
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing looked at; `advice` is empty where all is well."""
+    """One check; `advice` is empty if it passes."""
 
     part: str
     ok: bool
@@ -45,7 +45,7 @@ def _mpi() -> Finding:
 
 
 def _models() -> Finding:
-    """Ask the LIGGGHTS in use for what it has, and let it create each of epdem's models."""
+    """The models of epdem that the LIGGGHTS in use can create."""
     if reason := launcher.missing():
         return Finding("models in LIGGGHTS", False, "not here", reason)
     path, laws = paths.launcher(), tuple(declarations())
@@ -61,7 +61,7 @@ def _models() -> Finding:
 
 
 def examine() -> list[Finding]:
-    """All findings, in the order a user would mend them."""
+    """All findings, in the order of repair."""
     findings = [_library()]
     for name, kind in ENGINES.items():
         tool = kind()

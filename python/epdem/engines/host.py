@@ -12,7 +12,7 @@ import pandas as pd
 from ..base import rendering as decks
 from ..base.files import stored_results, write_texts
 from ..case import impact, scene
-from ..case.toml import named, read_toml
+from ..case.toml import error_context, read_toml
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Trajectory
 from ..impacts.experiment import experiment
@@ -84,7 +84,7 @@ class Host(ABC):
         Raises EngineError for a frame that is missing or not whole.
         """
         out, own = folder / self.out, self.scene_tables
-        plan = plan.ended(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
+        plan = plan.with_ends(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
         found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
         if plan.frames:
             found["particles"] = own.particles(plan, folder, without)
@@ -137,7 +137,7 @@ def scene_head(p: ScenePlan) -> decks.Head:
 def job_of(path: Path) -> Plan | ScenePlan:
     """The plan of the case or scene in a file. Raises CaseError."""
     data = read_toml(path)
-    with named(path):
+    with error_context(path):
         if scene.is_scene(data):
             return plan_scene(scene.parse(data, path))
         x = experiment(impact.parse(data, path))

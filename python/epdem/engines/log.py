@@ -49,7 +49,7 @@ def rows(log: Path) -> pd.DataFrame:
 
 
 def _column(p: ScenePlan, word: str) -> str | None:
-    """The column of a thermo word, with LAMMPS's f_ or without; None: one that is not ours."""
+    """The column of a thermo word, with LAMMPS's f_ or without; None: a word that is not in `ROWS`."""
     word = word.removeprefix("f_")
     if load := _LOAD.fullmatch(word):
         return f"{p.measured_walls[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"

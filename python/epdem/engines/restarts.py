@@ -56,7 +56,7 @@ def choose(
     The newest restart file from which the damaged frames are written again; if there is none, the newest. Raises
     CaseError if there is none at all.
     """
-    p = p.ended(log.ends(out)) if p.ends_early else p
+    p = p.with_ends(log.ends(out)) if p.ends_early else p
     steps = [step for step in whole_restarts(folder, out) if step < p.steps]  # at the end nothing is left to run
     if not steps:
         raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")

@@ -4,51 +4,51 @@
 import numpy as np
 import pandas as pd
 
-from ..base.tables import Quantity
+from ..base.tables import Column
 from ..case.impact import Check
 from .measurement import COLUMNS as MEASURED
-from .measurement import Measured
+from .measurement import Measurement
 from .plan import Plan
 from .prediction import Prediction
 
 CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
 OBLIQUE = ("psi_2", "e_t", "impulse_ratio", "rebound_angle", "spin")
 COLUMNS = {
-    "engine": Quantity("", "engine that ran the impact"),
-    "law": Quantity("", "contact law"),
-    "speed": Quantity("m/s", "normal impact speed"),
-    "gap": Quantity("m", "distance of the surfaces at the start"),
-    "e_n": Quantity("", "coefficient of restitution"),
-    "contact_time": Quantity("s", "time between the first and the last contact force"),
-    "force_max": Quantity("N", "largest normal force"),
-    "overlap_max": Quantity("m", "largest overlap"),
-    "residual_overlap": Quantity("m", "overlap at the end of the contact"),
-    "energy_residual": Quantity("", "work in less work out less plastic work, over the kinetic energy"),
-    "stuck": Quantity("", "number of starting phases after which the bodies stay together"),
-    "steps_in_contact": Quantity("", "smallest number of samples with a force"),
-    "passed": Quantity("", "whether every error is within the tolerance of the case"),
+    "engine": Column("", "engine that ran the impact"),
+    "law": Column("", "contact law"),
+    "speed": Column("m/s", "normal impact speed"),
+    "gap": Column("m", "distance of the surfaces at the start"),
+    "e_n": Column("", "coefficient of restitution"),
+    "contact_time": Column("s", "time between the first and the last contact force"),
+    "force_max": Column("N", "largest normal force"),
+    "overlap_max": Column("m", "largest overlap"),
+    "residual_overlap": Column("m", "overlap at the end of the contact"),
+    "energy_residual": Column("", "work in less work out less plastic work, over the kinetic energy"),
+    "stuck": Column("", "number of starting phases after which the bodies stay together"),
+    "steps_in_contact": Column("", "smallest number of samples with a force"),
+    "passed": Column("", "whether every error is within the tolerance of the case"),
     # oblique impacts
-    "angle": Quantity("rad", "impact angle, from the normal"),
-    "spin_before": Quantity("rad/s", "angular velocity before the impact"),
-    "e_t": Quantity("", "tangential restitution of the centres"),
-    "impulse_ratio": Quantity("", "tangential over normal impulse"),
-    "rebound_angle": Quantity("rad", "rebound angle, from the normal"),
-    "spin": Quantity("rad/s", "angular velocity after the impact"),
-    "psi_1": Quantity("", "slip before the impact over the speed, times kappa/mu"),
-    "psi_2": Quantity("", "slip after the impact over the speed, times kappa/mu"),
+    "angle": Column("rad", "impact angle, from the normal"),
+    "spin_before": Column("rad/s", "angular velocity before the impact"),
+    "e_t": Column("", "tangential restitution of the centres"),
+    "impulse_ratio": Column("", "tangential over normal impulse"),
+    "rebound_angle": Column("rad", "rebound angle, from the normal"),
+    "spin": Column("rad/s", "angular velocity after the impact"),
+    "psi_1": Column("", "slip before the impact over the speed, times kappa/mu"),
+    "psi_2": Column("", "slip after the impact over the speed, times kappa/mu"),
     # theory and paths
-    "radius_max": Quantity("m", "largest contact radius"),
-    "work_in": Quantity("J", "work of the loading"),
-    "work_out": Quantity("J", "work of the unloading"),
-    "plastic_work": Quantity("J", "plastic work"),
-    "time": Quantity("s", "time since the start"),
-    "overlap": Quantity("m", "overlap"),
-    "force": Quantity("N", "normal force"),
+    "radius_max": Column("m", "largest contact radius"),
+    "work_in": Column("J", "work of the loading"),
+    "work_out": Column("J", "work of the unloading"),
+    "plastic_work": Column("J", "plastic work"),
+    "time": Column("s", "time since the start"),
+    "overlap": Column("m", "overlap"),
+    "force": Column("N", "normal force"),
 }
 UNITS = {name: column.unit for name, column in COLUMNS.items() if column.unit}
 
 
-def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:
+def impacts_table(plan: Plan, measured: Measurement) -> pd.DataFrame:
     """One row per impact: speed, gap and all measured quantities."""
     columns = {"speed": plan.speed, "gap": plan.gap}
     if measured.rebound:

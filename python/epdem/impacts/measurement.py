@@ -16,7 +16,7 @@ SAMPLES = 200  # of each, about
 
 
 @dataclass(frozen=True)
-class Measured:
+class Measurement:
     """One value per impact, arrays of shape (n,), SI.
 
     energy_residual compares the sampled work in and out with the law's plastic work at the sampled peak,
@@ -35,14 +35,14 @@ class Measured:
     rebound: oblique.Rebound | None = None  # of oblique impacts
 
 
-COLUMNS = tuple(f.name for f in fields(Measured) if f.type is np.ndarray)
+COLUMNS = tuple(f.name for f in fields(Measurement) if f.type is np.ndarray)
 
 
 def _last(valid: np.ndarray) -> np.ndarray:
     return np.asarray(valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1))
 
 
-def measure(plan: Plan, path: Trajectory) -> Measured:
+def measure(plan: Plan, path: Trajectory) -> Measurement:
     """The impacts of a trajectory. Raises EngineError if a contact never began or never ended."""
     law = plan.experiment.theory()
     if plan.experiment.law.adheres:
@@ -80,7 +80,7 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
     rebound = None
     if path.tangential is not None and path.spin is not None:
         rebound = oblique.rebound(plan.experiment, e_n, tangential=path.tangential, spin=path.spin)
-    return Measured(
+    return Measurement(
         e_n=e_n,
         contact_time=contact_time,
         force_max=force_max,
@@ -92,7 +92,7 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
     )
 
 
-def _with_adhesion(plan: Plan, path: Trajectory) -> Measured:
+def _with_adhesion(plan: Plan, path: Trajectory) -> Measurement:
     """As `measure`: in contact as long as there is a force, of either sign; the last step with one is the first apart.
 
     The bodies part within that step. By the momentum of the pull, which it then has for the share s of a step,
@@ -115,7 +115,7 @@ def _with_adhesion(plan: Plan, path: Trajectory) -> Measured:
     work = 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap)
     lost = x.theory().lost_work(peak)
     nothing = np.full(plan.n, np.nan)
-    return Measured(
+    return Measurement(
         e_n=np.where(stuck, 0.0, -velocity[row, end] / plan.speed),
         contact_time=np.where(stuck, np.inf, (last + share) * dt - plan.gap / plan.speed),
         force_max=np.where(loaded, force, -np.inf).max(axis=1),

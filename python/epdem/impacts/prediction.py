@@ -36,7 +36,7 @@ class Prediction:
     rebound: oblique.Rebound | None = None  # of oblique impacts
     caveats: tuple[str, ...] = ()  # sentences on impacts outside the law's domain
     finite_strain: tuple[str, ...] = ()  # sentences on contacts beyond small strain
-    observation_time: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
+    observation_time: float = np.nan  # duration for which sticking bodies are observed [s]; NaN: without adhesion
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -50,7 +50,7 @@ class Prediction:
 
     @property
     def duration(self) -> np.ndarray:
-        """Times to be watched [s]: of contact, and where bodies stick a while in which they would part."""
+        """Times of observation [s]: of contact, and of bodies that stick `observation_time`."""
         return np.where(np.isfinite(self.contact_time), self.contact_time, self.observation_time)
 
     def table(self) -> pd.DataFrame:

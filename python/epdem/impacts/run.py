@@ -13,8 +13,8 @@ import pandas as pd
 from ..base import __version__
 from ..base.files import claim, results_folder
 from ..case.impact import Case, parse
-from ..case.toml import Read, named, read_toml, text_of
-from ..case.warnings import case_warnings
+from ..case.plausibility import case_warnings
+from ..case.toml import LoadedCase, error_context, read_toml, text_of
 from ..errors import CaseError
 from ..jobs.engine import Feature, require
 from ..jobs.stage import Inputs, Stage, Tables, compute
@@ -114,7 +114,7 @@ def _stage(results: store.Results, key: str) -> Stage | None:
     return Stage(Inputs({}, str(about.get("inputs"))), tables, seconds)
 
 
-def _beside_earlier(results: store.Results, old: store.Results) -> store.Results:
+def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
     if old.case_text != results.case_text:
         return results
     keep = [key for key in old.runs if key not in results.runs]
@@ -147,12 +147,12 @@ class _Work:
 def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Sequence[str], ranks: int) -> _Work:
     """Check all input and look for every engine, before anything is written or started."""
     tools = list({tool.name: tool for tool in tools}.values())
-    with named(place):
+    with error_context(place):
         chosen: list[str | None] = [*dict.fromkeys(laws)] or [None]
         experiments = [experiment(case, law) for law in chosen]
     require(*tools)
     predictions = {x.law.name: predict(x) for x in experiments}
-    with named(place):
+    with error_context(place):
         plans = [plan(x, predictions[x.law.name]) for x in experiments]
         for p in plans:
             for tool in tools:
@@ -162,16 +162,16 @@ def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Seq
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
 
 
-def _read(path: Path | str, steps: int | None) -> Read:
+def _read(path: Path | str, steps: int | None) -> LoadedCase:
     data = read_toml(path)
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
         data["numerics"].pop("error", None)
-    return Read(parse(data, path), text_of(path), path)
+    return LoadedCase(parse(data, path), text_of(path), path)
 
 
 def run(
-    case: Path | str | Read,
+    case: Path | str | LoadedCase,
     *,
     engines: Sequence[ImpactEngine],
     laws: Sequence[str] = (),
@@ -188,7 +188,7 @@ def run(
     in which there are other files. All input is checked and every engine looked for before anything is written or
     started.
     """
-    model, text, place = case if isinstance(case, Read) else _read(case, steps)
+    model, text, place = case if isinstance(case, LoadedCase) else _read(case, steps)
     work = _prepare(model, place, engines, laws, ranks)
     folder = results_folder(out, model.name)
     with claim(folder, force=force):
@@ -225,5 +225,5 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
             rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
             results.comparison = pd.concat(rows, ignore_index=True)
-            store.write(stored, _beside_earlier(results, old))  # results are stored after each engine
+            store.write(stored, _merge_earlier(results, old))  # results are stored after each engine
     return outcome

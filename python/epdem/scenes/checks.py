@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from ..base.tables import Quantity
+from ..base.tables import Column
 from ..case.outputs import BedRebound, FloorLoad, MassFlow, ReboundSpeed, Unloading
 from ..case.outputs import Row as NamedRow
 from ..case.scene import SceneCase
@@ -56,7 +56,7 @@ def _velocity(p: ScenePlan, row: NamedRow, rows: pd.DataFrame) -> np.ndarray:
     return speeds
 
 
-def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
+def _lost_energy(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
     """Energy [J] of the spheres that left before each step, from their last frame: kinetic, plastic, adhesive and
     friction."""
     energy = kinetic(spheres) + rotation(spheres)
@@ -72,7 +72,7 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
 
 
 def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
+    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, lost_spheres_energy, balance.
 
     With friction or rolling also rotation; with adhesion the work lost by jumps, and `elastic` includes the surface
     energy. With partial slip also friction, the work of friction, and springs, the elastic energy of the springs.
@@ -101,11 +101,11 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
         table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
     rows = tables["rows"]
     table["work"] = np.interp(steps, rows["step"], work_of_walls(p, rows))
-    table["left"] = _left(spheres, steps) if p.scene.open_boundary else 0.0
+    table["lost_spheres_energy"] = _lost_energy(spheres, steps) if p.scene.open_boundary else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
-    rubbed = ["friction", "springs"] if "friction_work" in p.works else []
-    kinds = ["kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion", "left", *rubbed]
+    of_friction = ["friction", "springs"] if "friction_work" in p.works else []
+    kinds = ["kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion", "lost_spheres_energy", *of_friction]
     total = table.reindex(columns=kinds, fill_value=0.0).sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
@@ -119,7 +119,7 @@ def closure(table: pd.DataFrame) -> float:
     return float(table["balance"].abs().max() / _moved(table))
 
 
-def gained(table: pd.DataFrame) -> float:
+def largest_gain(table: pd.DataFrame) -> float:
     """The lowest work of friction, where it is the rest of the balance, over the energy that moved; at most 0."""
     return min(0.0, float(table["friction"].min() / _moved(table)))
 
@@ -131,17 +131,17 @@ def _moved(table: pd.DataFrame) -> float:
 
 Row = dict[str, object]
 CHECKS = {  # the unit of value and expected; what passes
-    "spheres_in_room": Quantity("", "all spheres are in the room at the end"),
-    "floor_load": Quantity("N", "the floor load is the weight of the spheres (smooth walls: hydrostatic)"),
-    "rebound_of_the_bed": Quantity("m", "the bed rises by at most e_n^2 times its fall"),
-    "mass_flow": Quantity("kg/s", "the mass flow agrees with Beverloo's formula"),
-    "rebound_speed": Quantity("m/s", "{count} shots that hit the plate alone leave it with e_n v"),
-    "loading_stiffness": Quantity("N/m", "loading is at most as stiff as unloading"),
-    "recovered_work": Quantity("J", "the plate recovers at most the work that it did"),
-    "force_on_all_walls": Quantity("N", "the force on all walls is the weight of the spheres"),
-    "void": Quantity("", "number of pressed beds that lost all void, which ended the run"),
-    "energy_residual": Quantity("", "the energy balance closes: no term is a remainder"),
-    "energy_gained": Quantity("", "friction, the rest of the energy balance, is not negative"),
+    "spheres_in_room": Column("", "all spheres are in the room at the end"),
+    "floor_load": Column("N", "the floor load is the weight of the spheres (smooth walls: hydrostatic)"),
+    "rebound_of_the_bed": Column("m", "the bed rises by at most e_n^2 times its fall"),
+    "mass_flow": Column("kg/s", "the mass flow agrees with Beverloo's formula"),
+    "rebound_speed": Column("m/s", "{count} shots that hit the plate alone leave it with e_n v"),
+    "loading_stiffness": Column("N/m", "loading is at most as stiff as unloading"),
+    "recovered_work": Column("J", "the plate recovers at most the work that it did"),
+    "force_on_all_walls": Column("N", "the force on all walls is the weight of the spheres"),
+    "void": Column("", "number of pressed beds that lost all void, which ended the run"),
+    "energy_residual": Column("", "the energy balance closes: no term is a remainder"),
+    "energy_gained": Column("", "friction, the rest of the energy balance, is not negative"),
 }
 COLUMNS = ("key", "check", "value", "expected", "error", "tolerance", "unit", "passed")
 AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed at rest
@@ -204,7 +204,7 @@ def stiffness(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float
     return load, unload
 
 
-def recovered(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float, float]:
+def works_of_wall(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float, float]:
     """Work [J] that a wall (put in, got back): its force, a mean over each interval, times the displacement."""
     row = next(row for row in p.scene.row if row.name == press.force)
     speed = row.sign * _velocity(p, row, rows)
@@ -320,12 +320,12 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 speed, count = rebounds(tables["particles"], check.speed, expected)
                 rows.append(_row("rebound_speed", speed, expected, 1e-3, count=count))
             case Unloading():
-                put_in, back = recovered(p, check, tables["rows"])
+                put_in, back = works_of_wall(p, check, tables["rows"])
                 rows.append(_below("loading_stiffness", *stiffness(p, check, tables["rows"])))
                 rows.append(_below("recovered_work", back, put_in))
     rows += _of_parts(p, tables)
     if "energy_balance" in tables and not p.model.loses_energy:
         rows.append(_row("energy_residual", closure(tables["energy_balance"]), 0.0, 0.01))
     elif "energy_balance" in tables and "friction_work" not in p.works:
-        rows.append(_row("energy_gained", gained(tables["energy_balance"]), 0.0, 0.01))
+        rows.append(_row("energy_gained", largest_gain(tables["energy_balance"]), 0.0, 0.01))
     return pd.DataFrame(rows, columns=COLUMNS)

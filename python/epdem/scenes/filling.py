@@ -97,7 +97,7 @@ class Size(NamedTuple):
         return self.requested < 0.5 if self.placed is None else self.placed == 0
 
 
-def _wholes(exact: list[float]) -> list[int]:
+def _round_to_sum(exact: list[float]) -> list[int]:
     """Whole numbers with the sum of the exact ones, rounded: the largest remainders go up, of equal ones the first."""
     exact = [round(x, 9) for x in exact]  # round-off, as of other units, decides nothing
     result = [math.floor(x) for x in exact]
@@ -116,7 +116,7 @@ def _classes(case: SceneCase, particles: list[Particles]) -> list[tuple[int, str
     ]
 
 
-def counted(case: SceneCase, f: Fill) -> list[Size]:
+def count_sizes(case: SceneCase, f: Fill) -> list[Size]:
     """The sizes of a fill by count, mass or fraction, in whole numbers."""
     classes = _classes(case, f.particles)
     if f.count is not None:
@@ -127,7 +127,7 @@ def counted(case: SceneCase, f: Fill) -> list[Size]:
         assert f.fraction is not None
         total = f.fraction * f.region.volume / sum(share / case.materials[m].density for _, m, *_, share in classes)
     requested = [total * share / mass for *_, mass, share in classes]
-    return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _wholes(requested), strict=True)]
+    return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _round_to_sum(requested), strict=True)]
 
 
 def _random(case: SceneCase, fill: Insertion) -> list[Size]:
@@ -160,7 +160,7 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     found: list[Insertion] = []
     for f in scene.random_fills:
         key = scene.place(f"scene.fill.{f.name}")
-        sizes = sorted((size for size in counted(case, f) if size.placed), key=lambda size: -size.radius)
+        sizes = sorted((size for size in count_sizes(case, f) if size.placed), key=lambda size: -size.radius)
         if not sizes:
             raise CaseError(f"{key}: not one sphere; give more, or smaller ones")
         all_sizes = _insertion(case, scene, f, key, sum(size.placed or 0 for size in sizes))
@@ -182,7 +182,7 @@ def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, l
         first = next(group)
         if first.exact:
             f = of_case[key]
-            sizes = counted(case, f)
+            sizes = count_sizes(case, f)
             mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
             yield first.mixture, sizes, mass
         else:

@@ -13,8 +13,8 @@ from ..case.scene import SceneCase
 from ..case.walls import ConeWall, CylinderWall, LinearMove, MeshWall, PlateWall, PressMove, RotateMove
 from ..errors import CaseError
 from .filling import Insertion, mean_volume
+from .meshes import FloatArray
 from .timestep import highest_speed
-from .walls import FloatArray
 
 IntArray = npt.NDArray[np.int64]
 Named = list[tuple[str, Sphere]]  # the name of a sphere in messages, the sphere
@@ -178,11 +178,11 @@ DENSEST = 0.98  # that a press by a force is taken to reach
 
 
 class PressedBed(NamedTuple):
-    """A bed at the end of the motion of a plate in a phase: its height, that of its spheres without any void [m], its
-    area [m^2].
+    """A bed at the end of the motion of a plate in a phase: its height, the height of its spheres without void [m],
+    its area [m^2].
 
     key: place in the case. axis, sign: the motion; stop: place [m] of the plane that the plate moves to. height: NaN if
-    only the run tells it.
+    it is known in the run alone.
     """
 
     key: str
@@ -217,7 +217,7 @@ def dense_beds(beds: Iterable[PressedBed]) -> list[str]:
 
 
 def largest_density(scene: Parts, beds: Iterable[PressedBed]) -> float:
-    """Largest relative density that plates press a bed to: DENSEST if only the run tells it, 0 if nothing presses."""
+    """Largest relative density that plates press a bed to: DENSEST where the run alone knows it, 0 without a press."""
     moves = (move for phase in scene.phase for move in phase.moves.values())
     found = [min(bed.solid_height / bed.height, 1.0) if bed.height > 0.0 else DENSEST for bed in beds]
     presses = any(isinstance(move, LinearMove | PressMove) for move in moves)

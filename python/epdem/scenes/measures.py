@@ -10,9 +10,9 @@ from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from .columns import columns_of_rows, last_frame
+from .meshes import FloatArray
 from .model import pair_law
 from .plan import ScenePlan
-from .walls import FloatArray
 
 LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed

@@ -15,8 +15,8 @@ from ..errors import CaseError
 from . import placement
 from .checks import kinetic
 from .columns import columns_of_frames, last_frame, units
+from .meshes import FloatArray, at_end, box, tube
 from .plan import Phase, ScenePlan
-from .walls import FloatArray, at_end, box, tube
 
 AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
 DPI = 200

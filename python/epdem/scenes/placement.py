@@ -13,9 +13,9 @@ from ..case.scene import SceneCase
 from ..case.walls import Upright
 from ..errors import CaseError
 from .filling import Insertion, size_weights
+from .meshes import FloatArray
 from .model import Model
 from .plan import ScenePlan
-from .walls import FloatArray
 
 ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows some hundred are needed
 

@@ -9,12 +9,11 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
-from ..case import walls as case_walls
 from ..case.outputs import Row
 from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
-from ..case.walls import Limits, LinearMove, Move, RotateMove, Vector3
-from . import walls
+from ..case.walls import CasePhase, Limits, LinearMove, Move, RotateMove, Vector3
+from . import meshes
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
     PressedBed,
@@ -27,9 +26,9 @@ from .limits import (
     refuse_positions,
     refuse_steps,
 )
+from .meshes import FloatArray
 from .model import Model, model
 from .timestep import time_step
-from .walls import FloatArray
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
@@ -48,7 +47,7 @@ class Phase:
     or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
     """
 
-    case: case_walls.Phase
+    case: CasePhase
     end: int
     time_step: float
     gates: tuple[str, ...] = ()
@@ -71,8 +70,8 @@ class Phase:
 
 @dataclass(frozen=True)
 class PhaseSteps:
-    """A phase between its neighbours. upto: whether the step at its end is known before the run. end_frames: kinds of
-    frames that its end needs beside those every so many steps.
+    """A phase between its neighbours. upto: whether its last step is known before the run. end_frames: kinds of frames
+    that are due at its end beside those every N steps.
     """
 
     phase: Phase
@@ -105,7 +104,7 @@ class PhaseSteps:
 
     @property
     def own_time_step(self) -> float | None:
-        """The time step [s]; None: that of the phase before."""
+        """The time step [s]; None: the time step of the phase before."""
         step = self.phase.time_step
         return None if self.before is None or self.before.time_step == step else step
 
@@ -152,7 +151,7 @@ class ScenePlan:
 
     @property
     def pressed(self) -> tuple[PressedBed, ...]:
-        """Beds whose relative density the run has to look at, which ends if it is 1."""
+        """Beds whose relative density is known in the run alone, which ends if it reaches 1."""
         return tuple(bed for bed in self.beds if math.isnan(bed.height))
 
     @property
@@ -171,7 +170,7 @@ class ScenePlan:
 
     @property
     def time_step(self) -> float:
-        """The time step [s] of the first phase that gives none of its own, else of the first phase."""
+        """The time step [s] of the first phase without a given time step, else of the first phase."""
         return next((x.time_step for x in self.phases if x.case.time_step is None), self.phases[0].time_step)
 
     @property
@@ -191,7 +190,7 @@ class ScenePlan:
         ended = [phase.name for phase in self.phases if phase.reached == NO_VOID]
         return next((bed for bed in self.pressed if bed.phase in ended), None)
 
-    def ended(self, ends: Mapping[str, int], reached: Mapping[str, str] = MappingProxyType({})) -> "ScenePlan":
+    def with_ends(self, ends: Mapping[str, int], reached: Mapping[str, str] = MappingProxyType({})) -> "ScenePlan":
         """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it.
 
         reached: NOT_REACHED of the phases that ended by their duration although they have a condition; NO_VOID of a
@@ -278,8 +277,8 @@ class ScenePlan:
 
     @property
     def row_columns(self) -> tuple[str, ...]:
-        """The power of moving walls, in the rows if no other column tells their work."""
-        moving = any(map(walls.surface_rotation, self.scene.meshes.values())) or any(p.moves for p in self.phases)
+        """The power of moving walls, in the rows if their work follows from no other column."""
+        moving = any(map(meshes.surface_rotation, self.scene.meshes.values())) or any(p.moves for p in self.phases)
         return ("wall_power",) if moving and self.output.energy and not self.work_rows else ()
 
     @property
@@ -290,10 +289,10 @@ class ScenePlan:
 
     @property
     def work_rows(self) -> tuple[Row, ...]:
-        """The rows that tell the work of all moving walls, one for each wall; empty: of a wall no row does."""
+        """The rows from which the work of all moving walls follows, one for each wall; empty: a wall has none."""
         found = []
         for name, mesh in self.scene.meshes.items():
-            turn = walls.surface_rotation(mesh)
+            turn = meshes.surface_rotation(mesh)
             moves = [phase.moves[name] for phase in self.phases if name in phase.moves]
             ways = [move.velocity for move in moves if isinstance(move, LinearMove)]
             kind, vectors = ("torque", [turn.axis]) if turn else ("force", ways)
@@ -326,7 +325,7 @@ class ScenePlan:
     def rotations(self, wall: str) -> list[RotateMove]:
         """The rotations of a wall of triangles: of its surface, and in each phase."""
         moves = (phase.moves.get(wall) for phase in self.phases)
-        all_moves = [walls.surface_rotation(self.scene.meshes[wall]), *moves]
+        all_moves = [meshes.surface_rotation(self.scene.meshes[wall]), *moves]
         return [move for move in all_moves if isinstance(move, RotateMove)]
 
     @property
@@ -390,10 +389,10 @@ def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
     contact_model, scene, out = model(case), case.parts, case.output
-    triangles = walls.triangles(scene)
+    triangles = meshes.triangles(scene)
     refuse_positions(scene)
     refuse_outside(scene, triangles)
-    walls.refuse_leaving(scene, triangles)
+    meshes.refuse_leaving(scene, triangles)
     refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)

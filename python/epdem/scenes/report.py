@@ -28,7 +28,15 @@ Tables = dict[str, pd.DataFrame]
 TIME = Axis("time", "s")
 BINS = 30
 MEASURED_POINTS = 5  # kind of marker, as of measured impacts
-COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
+COLOURS = {
+    "kinetic": 0,
+    "rotation": INK,
+    "elastic": 2,
+    "plastic": 1,
+    "friction": 4,
+    "springs": 3,
+    "lost_spheres_energy": 6,
+}
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
 CHECKED = [("check", "{check}"), ("value", "{value:.5g}"), ("expected", "{expected:.5g}"), ("unit", "{unit}")]

@@ -18,10 +18,10 @@ import pandas as pd
 from ..base import tables as h5
 from ..base.tables import write_array, write_attributes
 from ..jobs.stage import Tables
-from . import walls
+from . import meshes
 from .columns import FORCE, NORMAL, SPINS, columns_of_rows, units
+from .meshes import FloatArray, at_end
 from .plan import ScenePlan
-from .walls import FloatArray, at_end
 
 ENGINE_TABLES = ("rows", "particles", "contacts", "walls", "phases")
 FILES = "files"  # group of the files that the case names
@@ -239,7 +239,7 @@ def _walls(p: ScenePlan, steps: np.ndarray) -> Iterator[tuple[str, list[np.ndarr
     A wall that a force drives is left out: no table has its position.
     """
     gates = {w.name for w in p.scene.gates}
-    sheets = {w.name: walls.sheet(w, p.box) for w in (*p.scene.planes, *p.scene.gates)}
+    sheets = {w.name: meshes.sheet(w, p.box) for w in (*p.scene.planes, *p.scene.gates)}
     corners = sheets | p.triangles
     places = [at_end(p.motions_until(int(step)), corners) for step in steps]
     phases = [p.phases[k] for k in np.searchsorted([phase.end for phase in p.phases[:-1]], steps)]

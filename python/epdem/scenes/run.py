@@ -12,10 +12,10 @@ import pandas as pd
 from ..base import __version__
 from ..base.files import ResultsFolder, claim, results_folder
 from ..base.paths import DEFAULT_ENGINE
+from ..case.plausibility import case_warnings
 from ..case.scene import SceneCase, load
-from ..case.toml import Read, named, names_in, text_of
+from ..case.toml import LoadedCase, error_context, file_names, text_of
 from ..case.toml import tables as toml_tables
-from ..case.warnings import case_warnings
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Report, silent
@@ -89,15 +89,15 @@ def run_plan(
 ) -> dict[str, pd.DataFrame]:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
     engine.check(p)
-    return compute(engine, p, folder, _as_they_are, version="", ranks=ranks, report=report).tables
+    return compute(engine, p, folder, _unchanged, version="", ranks=ranks, report=report).tables
 
 
-def _as_they_are(tables: Tables) -> tuple[Tables, dict[str, float]]:
+def _unchanged(tables: Tables) -> tuple[Tables, dict[str, float]]:
     return tables, {}
 
 
 def run(
-    case: Path | str | Read,
+    case: Path | str | LoadedCase,
     engine: SceneEngine,
     *,
     out: Path | None = None,
@@ -112,8 +112,8 @@ def run(
     `fresh` ignores stored results; `force` allows a folder in which there are other files. All input is checked and
     the engine looked for before anything is written or started.
     """
-    model, text, place = case if isinstance(case, Read) else Read(load(case), text_of(case), case)
-    with named(place):
+    model, text, place = case if isinstance(case, LoadedCase) else LoadedCase(load(case), text_of(case), case)
+    with error_context(place):
         p = plan(model)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
@@ -121,10 +121,10 @@ def run(
         notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
     check_run(engine, ranks=ranks, resume=resume)
     version = engine.version()
-    with named(place):
+    with error_context(place):
         given = inputs(engine, p, version=version, facts=_facts(p), ranks=ranks)
     beside = Path(str(place)).parent
-    contents = {name: (beside / name).read_bytes() for name in sorted(names_in(toml_tables(text, place)))}
+    contents = {name: (beside / name).read_bytes() for name in sorted(file_names(toml_tables(text, place)))}
     work = _Work(text, p, engine, version, given, notes, contents, ranks, lambda step: report(step, p.steps))
     folder = results_folder(out, p.case.name, "" if engine.name == DEFAULT_ENGINE else engine.name)
     if resume and not folder.exists():
@@ -138,7 +138,7 @@ def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
         return p
     phases = tables["phases"]
     ends = dict(zip(phases["phase"], phases["end"].astype(int), strict=True))
-    return p.ended(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
+    return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
 
 
 def _computed(work: _Work, place: ResultsFolder, old: results.SceneResults | None) -> SceneOutcome:
@@ -152,7 +152,7 @@ def _computed(work: _Work, place: ResultsFolder, old: results.SceneResults | Non
         work.engine,
         work.plan,
         place.folder,
-        _as_they_are,
+        _unchanged,
         version=work.version,
         facts=_facts(work.plan),
         ranks=work.ranks,
@@ -175,9 +175,9 @@ def _resumed(work: _Work, place: ResultsFolder) -> SceneOutcome:
         was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
         begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
         raise CaseError(f"{begun}; run it anew (--fresh)")
-    tables, went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
+    tables, resumed_run = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     stage = Stage(work.inputs, tables, {"seconds": time.perf_counter() - start})
-    return _finish(work, folder, stage, None, went_on)
+    return _finish(work, folder, stage, None, resumed_run)
 
 
 def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
@@ -200,7 +200,7 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
 
 
 def _finish(
-    work: _Work, folder: Path, stage: Stage, old: results.SceneResults | None, went_on: Resumed | None = None
+    work: _Work, folder: Path, stage: Stage, old: results.SceneResults | None, resumed_run: Resumed | None = None
 ) -> SceneOutcome:
     """Judge the tables of a stage and store them; `old`: the file from which they come."""
     p = _as_run(work.plan, stage.tables)
@@ -218,14 +218,14 @@ def _finish(
     }
     decks = {name: text for name, text in work.inputs.files.items() if "/" not in name}  # without modules
     left_out = []
-    if went_on and went_on.lost:
-        steps = ("step " if len(went_on.lost) == 1 else "steps ") + ", ".join(map(str, went_on.lost))
+    if resumed_run and resumed_run.lost:
+        steps = ("step " if len(resumed_run.lost) == 1 else "steps ") + ", ".join(map(str, resumed_run.lost))
         advice = "are missing or not whole, and left out; --fresh runs the scene anew"
         left_out = [f"{folder}: the frames of {steps} {advice}"]
     kept = results.SceneResults(work.text, old.attributes if old else about, tables, decks, work.named)
     if old is None or not kept.equals(old):
         results.write(folder / "results.h5", p, kept)
     warnings = [*work.notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *left_out]
-    begin = went_on.step if went_on else None
+    begin = resumed_run.step if resumed_run else None
     seconds = stage.seconds.get("seconds", 0.0)
     return SceneOutcome(p, folder, kept, seconds, stage.reused, begin, warnings)

@@ -14,9 +14,9 @@ from ..theory.timestep import LOOSE
 from . import filling, stages
 from .columns import STRAINS
 from .limits import dense_beds, largest_density, overlaps
+from .meshes import FloatArray, sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
 from .timestep import stable_step
-from .walls import FloatArray, sheet
 
 SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..case.impact import HIGHEST_E_N, Case, load
 from ..case.law import law_numbers
-from ..case.toml import named, text_of
+from ..case.toml import error_context, text_of
 from ..case.units import to_si
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, apply_rate, bodies, pair_of
@@ -115,12 +115,12 @@ class _Uncalibrated:
 
 def _uncalibrated(path: Path) -> _Uncalibrated:
     case = load(path)
-    with named(path):
+    with error_context(path):
         parameter = find_law(case.law.name).strength
     if parameter is None:
         raise CaseError(f"{path}: law {case.law.name} never yields; it has nothing to calibrate")
     given = {k: v for k, v in case.law.parameters().items() if k not in (parameter, f"{parameter}_ratio")}
-    with named(path):
+    with error_context(path):
         return _Uncalibrated(case, law_numbers(case.law.name, given), parameter)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from ..base.files import results_folder
 from ..base.paths import DEFAULT_ENGINE
 from ..case.scene import is_scene
-from ..case.toml import Read, text_for_anywhere
+from ..case.toml import LoadedCase, portable_text
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
 from .sweep import folder as store
@@ -127,7 +127,7 @@ class _Search:
 
 
 def fit(
-    scene: Path | Read,
+    scene: Path | LoadedCase,
     targets: Targets,
     free: Mapping[str, str],
     *,
@@ -145,7 +145,7 @@ def fit(
     largest relative error; the points are in `out` (default: runs/<name>_fit). Raises CaseError for unknown names, a
     key that changes nothing and targets out of reach, EngineError for a scene that fails.
     """
-    text, place = (scene.text, scene.place) if isinstance(scene, Read) else (text_for_anywhere(scene), scene)
+    text, place = (scene.text, scene.place) if isinstance(scene, LoadedCase) else (portable_text(scene), scene)
     data = tomllib.loads(text)
     if not is_scene(data):
         raise CaseError(f"{place}: --target is a number of a scene's results; for impacts give --e-n, --hv or --hb")

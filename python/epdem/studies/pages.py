@@ -13,7 +13,7 @@ from ..base import __version__
 from ..base.files import claim
 from ..base.paths import library_hash, product_hash
 from ..base.tables import unit_of
-from ..engines import reasoned
+from ..engines import texts_with_reasons
 from ..engines.citations import citations
 from ..impacts import charts
 from ..impacts.charts import SPEED
@@ -52,7 +52,7 @@ def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], 
     """The `stored` scripts of a deck by name, line by line with their comments; with the reasons of the engine's
     templates if the job is known. of: end of the titles."""
     texts = {name: text for name, text in stored.items() if name.startswith("in.") or name.endswith((".in", ".py"))}
-    texts |= {name: text for name, text in (reasoned(engine, job) if job else {}).items() if name in texts}
+    texts |= {name: text for name, text in (texts_with_reasons(engine, job) if job else {}).items() if name in texts}
     return [
         Lines(f"Deck {name}{of}", [(command.rstrip(), why) for command, _, why in split])
         for name, text in texts.items()

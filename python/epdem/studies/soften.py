@@ -29,7 +29,7 @@ import tomlkit
 from ..case.fields import Material
 from ..case.impact import Rate
 from ..case.law import law_numbers
-from ..case.toml import named, read_toml, text_for_anywhere, text_of, with_library
+from ..case.toml import error_context, portable_text, read_toml, text_of, with_library
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, find_law, yield_ratio_of
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
@@ -142,7 +142,7 @@ def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
     if not scenes.is_scene(data):
         return predict(experiment(impacts.parse(data, path)))
     case = scenes.parse(data, path)
-    with named(path):
+    with error_context(path):
         find_law(case.law.name)
     return predict(leading_impact(case))
 
@@ -177,7 +177,7 @@ def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
     before = float(hard.strain.max())
     after, change = before * factor**STRAIN_POWER, 0.0
     moved = folder is not None and folder.resolve() != path.parent.resolve()
-    document = tomlkit.parse(text_for_anywhere(path) if moved else text_of(path))
+    document = tomlkit.parse(portable_text(path) if moved else text_of(path))
     replacements = _replacements(data, factor)
     changes = [_change(document, data, keys, text) for keys, text in replacements.items()]
     if ("law", "finite_strain") in replacements:

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from ..case.impact import Case, load
-from ..case.toml import named
+from ..case.toml import error_context
 from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import EngineError
@@ -147,7 +147,7 @@ def run(
 ) -> Outcome:
     """Errors and times of every model at every number of steps in the shortest contact; engines none: ENGINES."""
     case, begin = load(case_path), time.perf_counter()
-    with named(case_path):
+    with error_context(case_path):
         chosen = models(case, engines or [*ENGINES], laws, steps)
     rows = []
     with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:

@@ -12,7 +12,7 @@ import pandas as pd
 from ..base.files import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import Check, load
-from ..case.toml import named
+from ..case.toml import error_context
 from ..engines import ENGINES, ImpactEngine
 from ..engines.yade.engine import Yade
 from ..errors import CaseError, EngineError
@@ -129,7 +129,7 @@ def crosscheck(
     Engines that are not installed or cannot run the case are left out. Raises CaseError, EngineError.
     """
     case = load(path)
-    with named(path):
+    with error_context(path):
         x = experiment(case, law)
     tools, absent = models(x, engines)
     own = {name: kind() for name, kind in OWN_LAW.items() if name in tools}

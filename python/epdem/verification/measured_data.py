@@ -16,7 +16,7 @@ from ..base import paths
 from ..base.declarations import declarations
 from ..base.files import results_folder
 from ..case.impact import Case, parse
-from ..case.toml import named, read_toml
+from ..case.toml import error_context, read_toml
 from ..engines import ImpactEngine
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, experiment
@@ -193,7 +193,7 @@ def validate(
             for law, one in product(dict.fromkeys(chosen) or declarations(), measured):
                 progress(f"{one.name}, {law}")
                 try:
-                    with named(one.name):
+                    with error_context(one.name):
                         found = _of_law(one, law, tools, Path(scratch))
                 except CaseError as error:
                     if chosen:

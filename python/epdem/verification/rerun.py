@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base.tables import attributes, open_results
-from ..case.toml import names_in, renamed
+from ..case.toml import file_names, replace_file_names
 from ..engines import scene_engine
 from ..errors import CaseError
 from ..impacts import run as impacts
@@ -61,7 +61,7 @@ def _scene(path: Path, scratch: Path, progress: Progress) -> Rerun:
     old = scene_store.read(path)
     about = old.attributes
     name, ranks = str(about["engine"]), int(str(about["ranks"]))
-    text = renamed(old.case_text, _files(path, old, scratch))
+    text = replace_file_names(old.case_text, _files(path, old, scratch))
     progress(f"{name}: {about['steps']} steps")
     scenes.run(_case(text, scratch), scene_engine(name), out=scratch / "out", ranks=ranks)
     new = scene_store.read(scratch / "out/results.h5")
@@ -71,7 +71,7 @@ def _scene(path: Path, scratch: Path, progress: Progress) -> Rerun:
 
 def _files(path: Path, old: scene_store.SceneResults, scratch: Path) -> dict[str, Path]:
     """The files that a scene names, written to `scratch`: their names and places."""
-    if old.files is None and names_in(tomllib.loads(old.case_text)):
+    if old.files is None and file_names(tomllib.loads(old.case_text)):
         raise CaseError(f"{path}: does not hold the files that its case names (an earlier version); run the case again")
     places = {name: scratch / f"{n}_{Path(name).name}" for n, name in enumerate(old.files or {})}
     for name, place in places.items():

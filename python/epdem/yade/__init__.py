@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a YADE deck contains a copy of: `deck_modules`, which YADE's own Python imports."""
+"""Modules whose copies are part of a YADE deck: `deck_modules`, which YADE's own Python imports."""

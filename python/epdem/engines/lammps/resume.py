@@ -11,8 +11,8 @@ from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ..restarts import choose, later, phase_at, pruning
 from . import launcher
-from . import scene_tables as tables
-from .scene_deck import Restart, SceneDeck, deck
+from . import tables as tables
+from .deck import Restart, SceneDeck, deck
 from .scene_walls import DeckWall, motions_again, plane
 
 

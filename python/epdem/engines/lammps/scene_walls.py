@@ -23,8 +23,8 @@ from ...case.walls import (
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.limits import PressedBed
+from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
-from ...scenes.walls import spans, surface_rotation
 from ..host import LIGGGHTS, refuse
 from ..input_script import WRITE_RESTART, wall_id
 from . import words

@@ -2,18 +2,14 @@
 """LIGGGHTS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from ...base import paths
-from ...base import rendering as decks
 from ...base.declarations import declarations
 from ...base.processes import most_ranks
-from ...errors import CaseError, EngineError
+from ...errors import CaseError
 from ...impacts.engine import Trajectory, check_features
-from ...impacts.plan import Plan, approach
+from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report
 from ...jobs.stage import Tables
 from ...scenes.engine import Resumed
@@ -22,27 +18,12 @@ from ...theory.sources import Source
 from .. import log
 from ..host import Host, impact_head
 from ..input_script import atom_types, finite, impact_files
-from . import dump, launcher, resume, scene_deck, scene_tables
+from . import deck, launcher, resume, tables
+from .deck import ImpactDeck
 from .macros import ContactWords
 from .properties import HARD, SOFT, Property, of_law, tangential
 
-PATH, END = "path.bin", "end.bin"
 NO_BALANCE = "numerics.balance: the borders of ranks in LIGGGHTS do not move, it was left out"
-
-
-@dataclass(frozen=True)
-class ImpactDeck:
-    """Values of the template of impacts. types: materials of the atom types. wall_type: None: no wall is hit."""
-
-    plan: Plan
-    head: decks.Head
-    contact: ContactWords
-    data: str
-    skin: float
-    types: tuple[str, ...]
-    oblique: bool
-    wall_type: int | None
-    path: str
 
 
 class Liggghts(Host):
@@ -62,7 +43,7 @@ class Liggghts(Host):
     mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
     out = launcher.OUT
-    scene_deck, scene_tables = scene_deck, scene_tables
+    scene_deck, scene_tables = deck, tables
     leftovers: tuple[str, ...] = (
         "particles.*.bin",
         "contacts.*.txt",
@@ -131,16 +112,16 @@ class Liggghts(Host):
             types=tuple(b.material for b, _ in types),
             oblique=x.oblique is not None,
             wall_type=len(types) if math.isinf(x.target.radius) else None,
-            path=PATH,
+            path=deck.PATH,
         )
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
-        path = folder / PATH
+        path = folder / deck.PATH
         path.unlink(missing_ok=True)
-        (folder / END).unlink(missing_ok=True)
+        (folder / tables.END).unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
         wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        result = trajectory(plan, path, {"total": wall, "stepping": log.loop_seconds(folder / launcher.LOG)})
+        result = tables.trajectory(plan, path, {"total": wall, "stepping": log.loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result
 
@@ -150,18 +131,3 @@ class Liggghts(Host):
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         resumed = resume.resume(job, folder, ranks=ranks, report=report)
         return self.read(job, folder, without=resumed.lost), resumed
-
-
-def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
-    """Overlap, force and approach velocity from z, vz, fz of every body. Raises EngineError if samples are missing."""
-    n = plan.n
-    try:
-        z, vz, fz = np.moveaxis(dump.series(path), 2, 0)
-        bodies = n if math.isinf(plan.experiment.target.radius) else 2 * n
-        if z.shape != (plan.steps + 1, bodies):
-            raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
-        vx, spin = dump.series(path.with_name(END))[-1].T if plan.experiment.oblique else (None, None)
-    except (ValueError, IndexError) as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {launcher.LOG} beside it") from None
-    overlap, velocity = approach(plan, z, vz)
-    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, vx, spin)

@@ -22,9 +22,9 @@ from ...errors import CaseError
 from ...scenes.plan import ScenePlan
 from ..host import job_of
 from ..input_script import data_text
+from .deck import deck as scene_deck
 from .engine import Liggghts
 from .properties import HARD
-from .scene_deck import deck as scene_deck
 from .scene_parts import stl_text
 
 HYSTERESIS = "hooke/hysteresis"
@@ -59,7 +59,7 @@ class Conversion:
     notes: list[str] = field(default_factory=list)
 
 
-def _converted(command: str, words: list[re.Match[str]], law: Declaration, place: str) -> tuple[str, list[str]]:
+def _replace_model(command: str, words: list[re.Match[str]], law: Declaration, place: str) -> tuple[str, list[str]]:
     """The command with the law's model and without settings that the model does not have; what was dropped."""
     texts = [word.group() for word in words]
     at = texts.index("model") + 1 if "model" in texts[:-1] else 0
@@ -193,7 +193,7 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
         texts = [word.group() for word in words]
         pairs = texts[:1] == ["pair_style"] and "gran" in texts
         if pairs or (texts[:1] == ["fix"] and texts[3:4] == ["wall/gran"]):
-            command, dropped = _converted(command, words, law, where)
+            command, dropped = _replace_model(command, words, law, where)
             models, notes = models + 1, notes + dropped
         elif texts[:1] == ["fix"] and texts[3:4] == ["property/global"]:
             present.add(texts[4] if len(texts) > 4 else "")

@@ -25,7 +25,7 @@ class Primitive:
 
 
 @dataclass(frozen=True)
-class Load:
+class WallLoad:
     """The force on a wall in the rows, of number `number`, and the torque, of all but planes.
 
     mesh: LIGGGHTS sums both. variables: (name, formula) of each sphere, of which the last three are the torque.
@@ -74,11 +74,11 @@ def primitives(p: ScenePlan) -> tuple[Primitive, ...]:
     return tuple(primitive(p, w, force=w.name in p.measured_walls or bool(p.contacts)) for w in walls(p))
 
 
-def loads(p: ScenePlan) -> tuple[Load, ...]:
+def loads(p: ScenePlan) -> tuple[WallLoad, ...]:
     """The sums of the forces on the walls that the rows name."""
     round_ = tubes(p)
     return tuple(
-        Load(n, wall_id(name), name in p.scene.meshes and name not in round_, _torque(n, round_.get(name)))
+        WallLoad(n, wall_id(name), name in p.scene.meshes and name not in round_, _torque(n, round_.get(name)))
         for n, name in enumerate(p.measured_walls, 1)
     )
 

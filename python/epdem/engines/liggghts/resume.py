@@ -16,9 +16,9 @@ from ...scenes.plan import ScenePlan
 from .. import log
 from ..restarts import choose, later, phase_at, pruning
 from . import launcher
-from . import scene_tables as tables
-from .scene_deck import SceneDeck, deck
-from .scene_parts import Fill
+from . import tables as tables
+from .deck import SceneDeck, deck
+from .scene_parts import InsertFix
 
 
 def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
@@ -63,7 +63,7 @@ def _refuse_vtk(plan: ScenePlan) -> None:
         )
 
 
-def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[Fill]:
+def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[InsertFix]:
     """The insertions of a run that goes on in a phase, without streams that have ended: LIGGGHTS refuses these. A
     stream of an earlier phase goes on in this one."""
     names = [part.run.name for part in d.phases]

@@ -15,8 +15,8 @@ from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, Vector3
 from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed
+from ...scenes.meshes import surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ...scenes.walls import surface_rotation
 from ..input_script import WRITE_RESTART, StopCondition, stop_condition, torque_origin, wall_id
 from .primitives import Primitive, primitive, tubes
 
@@ -26,7 +26,7 @@ SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
 
 @dataclass(frozen=True)
 class Template:
-    """A size of a fill. limit: the words for a tiny volume, if the template has one."""
+    """A size of a fill. limit: keyword and value for a volume below LIGGGHTS's least one."""
 
     id: str
     seed: int
@@ -38,7 +38,7 @@ class Template:
 
 
 @dataclass(frozen=True)
-class Fill:
+class InsertFix:
     """A `fix insert`: a distribution of templates, at once or as a stream.
 
     phase: in which it begins. every: steps between two insertions; None: it is one. once: in one step, so that a
@@ -60,11 +60,11 @@ class Fill:
 
 
 @dataclass(frozen=True)
-class Surface:
+class SurfaceMesh:
     """A wall of triangles.
 
-    style: with sums of forces, driven by one. keywords: what the surface does. pressed_later: the force that drives the
-    wall acts in later phases only.
+    style: suffix of mesh/surface: with sums of forces, or driven by a force. keywords: rotation, wear and drive of the
+    wall. pressed_later: the force that drives the wall acts in later phases only.
     """
 
     id: str
@@ -76,7 +76,7 @@ class Surface:
 
 
 @dataclass(frozen=True)
-class NewSphere:
+class PhaseParticle:
     """A sphere that comes with a phase; no other centre is as `near` to its place [m]."""
 
     name: str
@@ -89,10 +89,10 @@ class NewSphere:
 
 
 @dataclass(frozen=True)
-class PhaseCommands:
+class DeckPhase:
     """A phase: commands at its start and its end, and commands of a run that continues in it.
 
-    steps: that are left. gates: planes that come with the phase. particles: spheres that come with it. power: formula
+    steps: remaining ones. gates: planes that come with the phase. particles: spheres that come with it. power: formula
     of the power of all that moves. vibrations: (wall, formula of the angle at the begin of the phase) of each vibration
     whose power is counted. restart_commands: where a restart file is due.
     """
@@ -104,7 +104,7 @@ class PhaseCommands:
     resume_gates: tuple[Primitive, ...]
     resume_commands: tuple[str, ...]
     end_commands: tuple[str, ...]
-    particles: tuple[NewSphere, ...]
+    particles: tuple[PhaseParticle, ...]
     power: str
     vibrations: tuple[tuple[str, str], ...]
     stop: StopCondition | None
@@ -121,7 +121,7 @@ def primes() -> Iterator[int]:
 
 
 def _limit(volume: float, least: float) -> str:
-    """The words that let LIGGGHTS take a volume [m^3] below its least one."""
+    """Keyword and value with which LIGGGHTS takes a volume [m^3] below its least one."""
     return f" volume_limit {min(MEANT, volume / 2):.3g}" if 0 < volume < least else ""
 
 
@@ -156,10 +156,10 @@ def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterato
     )
 
 
-def insertions(p: ScenePlan) -> tuple[Fill, ...]:
+def insertions(p: ScenePlan) -> tuple[InsertFix, ...]:
     """One `fix insert` for each fill of a scene."""
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
-    result: list[Fill] = []
+    result: list[InsertFix] = []
     first = 1
     steps = {phase.name: phase.time_step for phase in p.phases}
     for i, fill in enumerate(p.insertions, 1):
@@ -167,7 +167,7 @@ def insertions(p: ScenePlan) -> tuple[Fill, ...]:
         first += len(templates)
         step = steps[fill.phase]
         result.append(
-            Fill(
+            InsertFix(
                 id=f"fill{i}",
                 phase=fill.phase,
                 count=fill.count,
@@ -201,7 +201,7 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
     return next(iter(presses), None)
 
 
-def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
+def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
     """The walls of triangles."""
     pressed, formulas = {bed.wall for bed in p.pressed}, tubes(p)
     found = []
@@ -227,7 +227,7 @@ def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
             words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
-        found.append(Surface(wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
+        found.append(SurfaceMesh(wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
     return tuple(found)
 
 
@@ -253,8 +253,8 @@ def _place(p: ScenePlan, bed: PressedBed) -> str:
     return f"(f_{wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
-def _new_sphere(p: ScenePlan, b: SingleSphere) -> NewSphere:
-    return NewSphere(
+def _phase_particle(p: ScenePlan, b: SingleSphere) -> PhaseParticle:
+    return PhaseParticle(
         name=f"body_{b.name}",
         type=p.model.type_of(b.material),
         diameter=2 * b.radius,
@@ -265,16 +265,16 @@ def _new_sphere(p: ScenePlan, b: SingleSphere) -> NewSphere:
     )
 
 
-def phases(p: ScenePlan) -> tuple[PhaseCommands, ...]:
+def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     """The phases of a scene."""
     gates = {w.name: primitive(p, w) for w in p.scene.gates}
-    found: list[PhaseCommands] = []
+    found: list[DeckPhase] = []
     with_power = "wall_power" in p.row_columns
     for run in p.phase_steps:
         motions = {name: _motion(p, name, move) for name, move in run.moves.items()}
         before, after = run.before, run.after
         new = [name for name, move in run.moves.items() if before is None or before.moves.get(name) != move]
-        part = PhaseCommands(
+        part = DeckPhase(
             run=run,
             steps=run.steps,
             start_commands=tuple(motions[name][0] for name in new),
@@ -285,7 +285,7 @@ def phases(p: ScenePlan) -> tuple[PhaseCommands, ...]:
                 *(f"unfix {wall_id(name)}" for name in run.removed),
                 *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run.phase, after)),
             ),
-            particles=tuple(_new_sphere(p, b) for b in p.scene.later if b.phase == run.name),
+            particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == run.name),
             power=power(p, run.phase) if with_power else "",
             vibrations=tuple(_angles(before, run.phase, new)) if with_power else (),
             stop=stop_condition(p, run, partial(_place, p)),

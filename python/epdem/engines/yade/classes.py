@@ -10,7 +10,7 @@ from ...case.fields import NODES, Tangential
 
 
 @dataclass(frozen=True)
-class Material:
+class DeckMaterial:
     """A material of a deck: keywords of EpMat or of a material of YADE's own, SI."""
 
     name: str
@@ -42,7 +42,7 @@ class Functors:
 
 
 @dataclass(frozen=True)
-class Group:
+class BodyTable:
     """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each, if oblique v_x and omega_y [rad/s]."""
 
     data: str
@@ -58,7 +58,7 @@ class ContactClasses:
 
     law: str
     functors: Functors | None
-    materials: tuple[Material, ...]
+    materials: tuple[DeckMaterial, ...]
     of_pair: Mapping[str, float] | None = None
     native: bool = False
 
@@ -73,12 +73,12 @@ def material(
     poisson_ratio: float,
     density: float,
     friction: float,
-) -> Material:
+) -> DeckMaterial:
     """EpMat of a body. parameters: of the law, by their names; strength: of the body [Pa], inf: it never yields."""
     declared = declarations()[law]
     values = {"young": young_modulus, "poisson": poisson_ratio, "density": density, "frictionAngle": atan(friction)}
     given = {**parameters} | ({declared.strength: strength} if declared.strength else {})
-    return Material(name, values | _of_bodies(declared, given))
+    return DeckMaterial(name, values | _of_bodies(declared, given))
 
 
 def _of_bodies(declared: Declaration, given: Mapping[str, float]) -> dict[str, float]:

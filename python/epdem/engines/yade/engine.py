@@ -7,59 +7,27 @@ A deck has a copy of the module epdem_yade. Without the module a deck of normal 
 import re
 import shutil
 import time
-from dataclasses import dataclass
 from math import isfinite, isinf
 from pathlib import Path
-
-import numpy as np
 
 from ...base import rendering as decks
 from ...base.declarations import declarations, library_path
 from ...base.processes import call, captured_output
-from ...errors import CaseError, EngineError
-from ...impacts.engine import Trajectory, check_features, oblique_pairs
+from ...errors import CaseError
+from ...impacts.engine import Trajectory, check_features
 from ...impacts.experiment import Body, Experiment
-from ...impacts.plan import Plan, approach, side_by_side
+from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host, impact_head
-from . import classes, launcher, scene_deck, scene_tables
-from .classes import ContactClasses, Functors, Group, Material, PairValue
+from . import classes, deck, launcher, tables
+from .classes import BodyTable, ContactClasses, DeckMaterial, Functors, PairValue
+from .deck import ImpactDeck, axes, body_tables
 from .launcher import command, environment, module_version, write_deck_modules
 from .scene_parts import table_text
 
 INSTALL = "apt-get install yade"
-
-
-@dataclass(frozen=True)
-class Anvil:
-    """A fixed sphere under each body, its centre at z [m]: it replaces the wall of a law that has spheres only."""
-
-    radius: float
-    material: str
-    z: float
-
-
-@dataclass(frozen=True)
-class ImpactDeck:
-    """Values of the template of impacts. rigid: whether the target is. wall_material: None: no wall is hit.
-
-    samples: one more than the plan has, for a velocity is the mean of those half a step away. axes: of the trajectory.
-    """
-
-    plan: Plan
-    head: decks.Head
-    contact: ContactClasses
-    rigid: bool
-    anvil: Anvil | None
-    wall_material: str | None
-    bodies: tuple[Group, ...]
-    oblique: bool
-    skin: float
-    samples: int
-    axes: tuple[int, ...] = (2,)
-    path: str = "path.bin"
 
 
 class Yade(Host):
@@ -82,7 +50,7 @@ class Yade(Host):
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
     out = "out.yade"
-    scene_deck, scene_tables = scene_deck, scene_tables
+    scene_deck, scene_tables = deck, tables
     leftovers = ("particles.*.npy", "contacts.*.npy", "triangles.*.npy")
 
     def __init__(self) -> None:
@@ -125,11 +93,11 @@ class Yade(Host):
     def parts(self) -> list[Path]:
         return [launcher.module() or library_path()]
 
-    def material(self, x: Experiment, body: Body, strength: float) -> Material:
+    def material(self, x: Experiment, body: Body, strength: float) -> DeckMaterial:
         """The material of one body; with the C library its mass alone counts."""
         density = body.density if isfinite(body.density) else 1.0  # of a rigid wall: not used
         if not self.classes:
-            return Material(body.material, {"density": density})
+            return DeckMaterial(body.material, {"density": density})
         return classes.material(
             body.material,
             x.law.name,
@@ -170,9 +138,9 @@ class Yade(Host):
             x.target.material: self.material(x, x.target, x.law.strengths[1]),
             x.body.material: self.material(x, x.body, x.law.strengths[0]),
         }
-        bodies = [Group("body.data", x.body.radius, x.body.material)]
+        bodies = [BodyTable("body.data", x.body.radius, x.body.material)]
         if not wall:
-            bodies.append(Group("target.data", x.target.radius, x.target.material))
+            bodies.append(BodyTable("target.data", x.target.radius, x.target.material))
         return ImpactDeck(
             plan=plan,
             head=impact_head(plan),
@@ -184,14 +152,14 @@ class Yade(Host):
             wall_material=x.target.material if wall else None,
             bodies=tuple(bodies),
             oblique=x.oblique is not None,
-            axes=_axes(plan),
+            axes=axes(plan),
             skin=0.1 * min(x.body.radius, x.target.radius),
             samples=plan.steps + 2,
         )
 
     def check_scene(self, plan: ScenePlan) -> list[str]:
         super().check_scene(plan)
-        return scene_deck.notes(plan)
+        return deck.notes(plan)
 
     def impact_files(self, plan: Plan) -> dict[str, str]:
         deck = self.deck(plan)
@@ -214,52 +182,9 @@ class Yade(Host):
         allowed = 120 + 2e-5 * plan.n * plan.steps
         call([command(), "-n", "-x", "impact.py"], folder, log=log.name, seconds=allowed, env=environment())
         wall = time.perf_counter() - start
-        result = trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
+        result = tables.trajectory(plan, path, {"total": wall, "stepping": tables.stepping_seconds(log)})
         path.unlink()  # large
         return result
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        call([command(), "-n", "-x", scene_deck.SCRIPT], folder, log=self.out, env=environment(), report=report)
-
-
-def body_tables(plan: Plan) -> list[np.ndarray]:
-    """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move; v_x and omega_y too if they are oblique."""
-    tables = []
-    for g in side_by_side(plan):
-        spin = np.zeros(plan.n) if g.spin is None else g.spin
-        more = [g.velocity[:, 0], spin] if plan.experiment.oblique else []
-        tables.append(np.column_stack([g.place, g.velocity[:, 2], *more]))
-    return tables
-
-
-def _axes(plan: Plan) -> tuple[int, ...]:
-    """Along z, and along x between spheres that meet obliquely."""
-    return (0, 2) if plan.experiment.oblique and not isinf(plan.experiment.target.radius) else (2,)
-
-
-def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
-    """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
-    n, axes = plan.n, len(_axes(plan))
-    expected = (plan.steps + 2, 3, axes, n if isinf(plan.experiment.target.radius) else 2 * n)
-    tangential = spin = None
-    try:
-        with path.open("rb") as file:
-            samples = np.load(file)
-            if plan.experiment.oblique:
-                tangential, spin = np.load(file)
-        if samples.shape != expected or not np.isfinite(samples).all():
-            raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
-    except (OSError, ValueError) as error:
-        raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
-    place, before, force = np.moveaxis(samples, 0, 2)
-    place, force, velocity = place[:, :-1], force[:, :-1], 0.5 * (before[:, :-1] + before[:, 1:])
-    if axes > 1 and spin is not None:
-        return oblique_pairs(plan, place, velocity, force, spin[:n], seconds)
-    overlap, speed = approach(plan, place[0], velocity[0])
-    return Trajectory(plan.time_step, overlap, force[0, :, :n].T, speed, seconds, tangential, spin)
-
-
-def stepping_seconds(log: Path) -> float:
-    """The deck's own time for its steps [s]; NaN if the log does not contain it."""
-    times = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
-    return float(times[-1]) if times else float("nan")
+        call([command(), "-n", "-x", deck.SCRIPT], folder, log=self.out, env=environment(), report=report)

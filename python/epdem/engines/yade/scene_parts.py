@@ -11,8 +11,8 @@ from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, Upr
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.filling import Insertion
+from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ...scenes.walls import spans, surface_rotation
 from ..input_script import first_look, torque_origin, void_height
 
 EDGES = (
@@ -41,7 +41,7 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Fill:
+class DeckFill:
     """Spheres that come during a phase at places that the run finds.
 
     key: place of their number in the case. file: their sizes. circle: centre and radius of a round region. batch: of
@@ -121,13 +121,13 @@ def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
     return [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.measured_walls]
 
 
-def fills(p: ScenePlan, phase: Phase) -> Iterator[Fill]:
+def fills(p: ScenePlan, phase: Phase) -> Iterator[DeckFill]:
     """The spheres that come during a phase at places that the run finds."""
     step = phase.time_step
     for n, f in _late(p):
         if f.phase == phase.name:
             every = max(1, math.ceil(f.period / step)) if f.rate else 1
-            yield Fill(
+            yield DeckFill(
                 key=f.key,
                 file=f"fill{n}.txt",
                 seed=p.case.numerics.seed + n,
@@ -152,7 +152,7 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> tuple[str, int] | None:
-    """The condition on a row that may end a phase early, looked at in rows more than so many steps from its begin."""
+    """The condition on a row that may end a phase early, and the steps after which it is evaluated."""
     until = run.phase.case.condition
     if until is None:
         return None
@@ -168,7 +168,7 @@ def stop(p: ScenePlan, run: PhaseSteps) -> tuple[str, int] | None:
 
 
 def void(p: ScenePlan, phase: str) -> str:
-    """Formula of the height of the void in the bed that is pressed in a phase; "": none is."""
+    """Formula of the height of the void in the bed that is pressed in a phase; "": no bed is."""
     beds = [bed for bed in p.pressed if bed.phase == phase]
     return next((void_height(bed, f'O.bodies[walls["{bed.wall}"][0]].state.pos[{bed.axis}]') for bed in beds), "")
 

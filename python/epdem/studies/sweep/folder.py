@@ -25,7 +25,7 @@ from ...base import paths
 from ...base.files import MARKER, atomic, results_folder
 from ...case.messages import shorten
 from ...case.scene import is_scene
-from ...case.toml import names_in
+from ...case.toml import file_names
 from ...errors import CaseError
 from ...jobs.stage import Inputs, Stage
 from .points import Point, assign, keys_of
@@ -111,17 +111,17 @@ class Sweep:
 
     @cached_property
     def _hashes(self) -> dict[str, str]:
-        names = names_in(self.tables).union(*map(self._files, self.points))
+        names = file_names(self.tables).union(*map(self._files, self.points))
         return {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in names if Path(name).is_file()}
 
     @staticmethod
     def _files(point: Point) -> set[str]:
-        return names_in([{key.rpartition(".")[2]: value} for key, value in point.items()])
+        return file_names([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:
         """Hash of the case of a point with its files, of the engines and of epdem: a point with another one is looked
         at again, and its engines run if their own inputs have changed."""
-        names = names_in(self.data(number)) if self._files(self.points[number - 1]) else names_in(self.tables)
+        names = file_names(self.data(number)) if self._files(self.points[number - 1]) else file_names(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
         known = (self.data(number), self.identities[number - 1], sorted(self.versions.items()), contents)
         return hashlib.sha256(f"{paths.product_hash()}{known!r}".encode()).hexdigest()

@@ -19,9 +19,9 @@ import pandas as pd
 from ...base.declarations import declarations
 from ...base.files import claim
 from ...case import impact, scene
+from ...case.plausibility import case_warnings
 from ...case.scene import is_scene
-from ...case.toml import located, named, text_for_anywhere
-from ...case.warnings import case_warnings
+from ...case.toml import error_context, portable_text, resolve_paths
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.comparison import compare
@@ -51,12 +51,12 @@ def check(sweep: Sweep, number: int, *, plans: bool = False) -> CaseError | None
     try:
         if sweep.scene:
             parsed = scene.parse(data, place)
-            with named(place):
+            with error_context(place):
                 if plans:
                     scene_engine(sweep.engines[0]).check(plan_scene(parsed))
             return None
         case = impact.parse(data, place)
-        with named(place):
+        with error_context(place):
             for law in sweep.laws or (None,):
                 x = experiment(case, law)
                 if plans:
@@ -188,7 +188,7 @@ def plan(
 
     Raises CaseError, EngineError. Names of files among the values count from the folder of the file.
     """
-    text, folder = (text_for_anywhere(case), case.parent) if isinstance(case, Path) else (case, Path())
+    text, folder = (portable_text(case), case.parent) if isinstance(case, Path) else (case, Path())
     data = tomllib.loads(text)
     keys, scene = keys_of(data), is_scene(data)
     if table or "law.name" in settings:  # which laws the points choose, each of them says when it is read
@@ -214,7 +214,9 @@ def plan(
         name=str(data.get("case", {}).get("name", "case")),
         case=text,
         points=tuple(
-            {key: located(key, value, folder) for key, value in (row | point).items()} for row in rows for point in many
+            {key: resolve_paths(key, value, folder) for key, value in (row | point).items()}
+            for row in rows
+            for point in many
         ),
         engines=chosen,
         laws=tuple(dict.fromkeys(laws)),

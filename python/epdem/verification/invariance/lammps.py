@@ -8,7 +8,8 @@ import numpy as np
 
 from ...base.files import write_texts
 from ...engines.lammps import launcher
-from ...engines.lammps.engine import Lammps, frames
+from ...engines.lammps.engine import Lammps
+from ...engines.lammps.tables import impact_frames
 from .liggghts import VARIANTS, data, ranks_of, scripts
 from .pairs import Pairs
 
@@ -22,5 +23,5 @@ def velocities(tool: Lammps, pairs: Pairs, variant: str, folder: Path) -> np.nda
     write_texts(folder, texts | {deck.data: data(pairs, deck.types, variant == "swap")})
     for k in range(len(texts)):
         launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
-    v = frames(folder / deck.path, 1, 2 * pairs.plan.n).reshape(2, pairs.plan.n, 3)
+    v = impact_frames(folder / deck.path, 1, 2 * pairs.plan.n).reshape(2, pairs.plan.n, 3)
     return np.flip(v, axis=0) if variant == "swap" else v

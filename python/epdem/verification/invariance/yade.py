@@ -8,7 +8,8 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.processes import call
-from ...engines.yade.engine import ImpactDeck, Yade
+from ...engines.yade.deck import ImpactDeck
+from ...engines.yade.engine import Yade
 from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
 from ...impacts.plan import Group

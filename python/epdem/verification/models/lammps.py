@@ -7,7 +7,8 @@ from typing import Any
 
 from ...base import rendering as decks
 from ...engines.lammps import launcher
-from ...engines.lammps.engine import ImpactDeck, Lammps
+from ...engines.lammps.deck import ImpactDeck
+from ...engines.lammps.engine import Lammps
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent

@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...engines.liggghts.engine import ImpactDeck, Liggghts
+from ...engines.liggghts.deck import ImpactDeck
+from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent

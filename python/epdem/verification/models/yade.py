@@ -6,8 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...engines.yade.classes import Material
-from ...engines.yade.engine import Anvil, ImpactDeck, Yade
+from ...engines.yade.classes import DeckMaterial
+from ...engines.yade.deck import Anvil, ImpactDeck
+from ...engines.yade.engine import Yade
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Report, silent
@@ -31,7 +32,7 @@ class YadeLuding(Yade):
         path = super().run(job, folder, ranks=ranks, report=report)
         return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
-    def material(self, x: Experiment, body: Body, strength: float) -> Material:
+    def material(self, x: Experiment, body: Body, strength: float) -> DeckMaterial:
         law, wall = predictions.luding(x), math.isinf(x.target.radius)
         phi_f = 2 * law.phi_f if wall else law.phi_f  # YADE multiplies it by 2 R*, here half that of the wall
         values = {
@@ -44,7 +45,7 @@ class YadeLuding(Yade):
             "G0": 0.0,
             "frictionAngle": 0.0,
         }
-        return Material(body.material, values)
+        return DeckMaterial(body.material, values)
 
     def deck(self, plan: Plan) -> ImpactDeck:
         x, deck = plan.experiment, super().deck(plan)

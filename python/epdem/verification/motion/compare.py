@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.files import results_folder, write_texts
 from ...case.impact import load
-from ...case.toml import named
+from ...case.toml import error_context
 from ...errors import CaseError
 from ...impacts.experiment import experiment
 from ...jobs.engine import check_law, require
@@ -30,7 +30,7 @@ FRICTION = 0.3  # of a case that has none
 
 def touch_of(case: Path, law: str | None = None) -> Touch:
     """The spheres of a case of impacts; in place of a wall a second sphere of its material. Raises CaseError."""
-    with named(case):
+    with error_context(case):
         read_case = load(case)
         x = experiment(read_case, law)
         if x.viscous_restitution is not None:

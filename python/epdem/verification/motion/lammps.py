@@ -6,7 +6,9 @@ from pathlib import Path
 
 from ...base import rendering as decks
 from ...engines.lammps import launcher
-from ...engines.lammps.engine import ImpactDeck, Lammps, frames
+from ...engines.lammps.deck import ImpactDeck
+from ...engines.lammps.engine import Lammps
+from ...engines.lammps.tables import impact_frames
 from ...laws.library import Array
 from .liggghts import LiggghtsMotions
 from .prescribed import Motion, Touch, summary
@@ -28,4 +30,4 @@ class LammpsMotions(LiggghtsMotions):
         return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), pairs=pairs)
 
     def read(self, path: Path, steps: int) -> Array:
-        return frames(path, steps + 1, 2)
+        return impact_frames(path, steps + 1, 2)

@@ -10,8 +10,9 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call
-from ...engines.yade.classes import Material, settings
-from ...engines.yade.engine import ImpactDeck, Yade
+from ...engines.yade.classes import DeckMaterial, settings
+from ...engines.yade.deck import ImpactDeck
+from ...engines.yade.engine import Yade
 from ...engines.yade.launcher import BUILD, command, environment, write_deck_modules
 from ...errors import EngineError
 from .prescribed import Loads, Motion, Touch, summary
@@ -54,7 +55,7 @@ def deck(touch: Touch, motion: Motion) -> ImpactDeck:
     assert plain.contact.functors is not None  # `missing` says so
     contact = replace(
         plain.contact,
-        materials=tuple(Material(m.name, {**m.values, **friction}) for m in plain.contact.materials),
+        materials=tuple(DeckMaterial(m.name, {**m.values, **friction}) for m in plain.contact.materials),
         functors=replace(plain.contact.functors, settings=settings(touch.tangential)),
     )
     return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), contact=contact, path="path.npy")

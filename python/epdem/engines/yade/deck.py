@@ -1,22 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes in YADE: one Python deck, tables of spheres and triangles, and modules with a copy of the compiled laws."""
+"""YADE's decks of impacts and of scenes: values of the templates, tables of spheres and triangles."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
-from math import atan
+from math import atan, isinf
+
+import numpy as np
 
 from ...base import rendering as decks
 from ...case.walls import Move
+from ...impacts.plan import Plan, side_by_side
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import refuse, scene_head
 from . import classes as words
-from .classes import ContactClasses, Functors, Material, PairValue, of_pairs
+from .classes import BodyTable, ContactClasses, DeckMaterial, Functors, PairValue, of_pairs
 from .scene_parts import (
     EDGES,
     HEAD,
-    Fill,
+    DeckFill,
     Wall,
     bodies_file,
     check_walls,
@@ -37,6 +40,51 @@ WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "fricti
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 NO_RANKS = "numerics.processors, numerics.balance: a scene in YADE has one rank, they were left out"
 NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
+
+
+@dataclass(frozen=True)
+class Anvil:
+    """A fixed sphere under each body, its centre at z [m]: it replaces the wall of a law that has spheres only."""
+
+    radius: float
+    material: str
+    z: float
+
+
+@dataclass(frozen=True)
+class ImpactDeck:
+    """Values of the template of impacts. rigid: whether the target is. wall_material: None: the target is a sphere.
+
+    samples: one more than the plan has, for a velocity is the mean of those half a step away. axes: of the trajectory.
+    """
+
+    plan: Plan
+    head: decks.Head
+    contact: ContactClasses
+    rigid: bool
+    anvil: Anvil | None
+    wall_material: str | None
+    bodies: tuple[BodyTable, ...]
+    oblique: bool
+    skin: float
+    samples: int
+    axes: tuple[int, ...] = (2,)
+    path: str = "path.bin"
+
+
+def body_tables(plan: Plan) -> list[np.ndarray]:
+    """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move; v_x and omega_y too if they are oblique."""
+    tables = []
+    for g in side_by_side(plan):
+        spin = np.zeros(plan.n) if g.spin is None else g.spin
+        more = [g.velocity[:, 0], spin] if plan.experiment.oblique else []
+        tables.append(np.column_stack([g.place, g.velocity[:, 2], *more]))
+    return tables
+
+
+def axes(plan: Plan) -> tuple[int, ...]:
+    """Along z, and along x between spheres that meet obliquely."""
+    return (0, 2) if plan.experiment.oblique and not isinf(plan.experiment.target.radius) else (2,)
 
 
 def check(p: ScenePlan) -> None:
@@ -61,7 +109,7 @@ def notes(p: ScenePlan) -> list[str]:
     return [*found, EDGES] if any(not is_endless(p, name) for name in p.scene.meshes) else found
 
 
-def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
+def _materials(p: ScenePlan, friction: Square) -> tuple[DeckMaterial, ...]:
     materials, m = [], p.model
     for i, t in enumerate(m.types):
         x = p.case.materials[t.material]
@@ -84,7 +132,7 @@ def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
 
 
 def _functors(p: ScenePlan, friction: Square) -> Functors:
-    """Values of pairs as in LIGGGHTS: with [viscous] its restitution is that of both dashpots."""
+    """Values of pairs as in LIGGGHTS: the restitution of [viscous] belongs to both dashpots."""
     m = p.model
     pairs = [PairValue("frictAngle", None, pairs) for pairs in [_pairs(friction)] if pairs]
     pairs += [of_pairs("en", m.viscous)] if m.viscous else []
@@ -102,15 +150,15 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
 
 
 @dataclass(frozen=True)
-class PhaseCommands:
-    """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it, looked at
-    after so many steps. void: formula of the height of the void in the bed that is pressed; "": none is.
+class DeckPhase:
+    """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it, steps after
+    which the condition is evaluated. void: formula of the height of the void in the pressed bed; "": no bed is pressed.
     """
 
     run: PhaseSteps
     motions: tuple[Move, ...]
     bodies: str
-    fills: tuple[Fill, ...]
+    fills: tuple[DeckFill, ...]
     stop: tuple[str, int] | None
     void: str
 
@@ -138,7 +186,7 @@ class SceneDeck:
     high: tuple[float, ...]
     fall: float
     skin: float
-    phases: tuple[PhaseCommands, ...]
+    phases: tuple[DeckPhase, ...]
     fills: bool
     motions: tuple[Move, ...]
     sampling: int
@@ -146,9 +194,9 @@ class SceneDeck:
     loads: tuple[tuple[str, Sequence[float] | None], ...]
 
 
-def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
+def _phases(p: ScenePlan) -> Iterator[DeckPhase]:
     for run in p.phase_steps:
-        yield PhaseCommands(
+        yield DeckPhase(
             run=run,
             motions=motions(p, run.phase),
             bodies=bodies_file(p, run.name),

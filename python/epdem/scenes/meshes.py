@@ -46,7 +46,7 @@ def _band(lower: FloatArray, upper: FloatArray) -> FloatArray:
     return np.concatenate([np.stack([lower, a, upper], axis=1), np.stack([a, b, upper], axis=1)])
 
 
-def revolved(profile: Sequence[tuple[float, float]]) -> FloatArray:
+def revolve(profile: Sequence[tuple[float, float]]) -> FloatArray:
     """Surface of revolution about z through (radius, z) points, split so that no triangle is a needle."""
     bands = []
     for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
@@ -59,7 +59,7 @@ def revolved(profile: Sequence[tuple[float, float]]) -> FloatArray:
     return np.concatenate(bands)
 
 
-def along(axis: int, points: FloatArray) -> FloatArray:
+def orient(axis: int, points: FloatArray) -> FloatArray:
     """Triangles about the z axis, about axis 0, 1 or 2 instead."""
     return points[:, :, {0: [2, 1, 0], 1: [0, 2, 1], 2: [0, 1, 2]}[axis]]
 
@@ -74,7 +74,7 @@ def tube(diameters: tuple[float, float], low: float, high: float, *, closed: tup
     """A round tube about z between two heights, with the diameters there; `closed`: by discs at low, at high."""
     r0, r1 = diameters[0] / 2, diameters[1] / 2
     ends = [_disc(r, z) for r, z, shut in ((r0, low, closed[0]), (r1, high, closed[1])) if shut]
-    return np.concatenate([revolved([(r0, low), (r1, high)]), *ends])
+    return np.concatenate([revolve([(r0, low), (r1, high)]), *ends])
 
 
 def rectangle(axis: int, center: npt.ArrayLike, size: tuple[float, float]) -> FloatArray:
@@ -177,7 +177,7 @@ def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
 def place_stl(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
     """The triangles of an STL wall in the room xlo xhi ylo yhi zlo zhi [m], shape (n, 3, 3).
 
-    largest: of the radii [m], against which the size is checked. Raises CaseError for a file that is no good wall.
+    largest: of the radii [m], against which the size is checked. Raises CaseError for an invalid wall mesh.
     """
     place = f"scene.wall.{w.name}.file"
     points: FloatArray = w.scale * _read(w.file, place)
@@ -213,10 +213,10 @@ def _triangles(w: MeshWall, room: Limits, largest: float) -> FloatArray:
         case CylinderWall() | ConeWall():
             closed = ("from" in w.ends, "to" in w.ends)
             upright = tube(w.diameters_of_ends(), w.start, w.to, closed=closed)
-            turned: FloatArray = along("xyz".index(w.axis), upright) + np.array(w.axis_point)
+            turned: FloatArray = orient("xyz".index(w.axis), upright) + np.array(w.axis_point)
             return turned
         case RevolvedWall():
-            surface: FloatArray = revolved(w.profile) + np.array([*w.center, 0.0])
+            surface: FloatArray = revolve(w.profile) + np.array([*w.center, 0.0])
             return surface
         case StlWall():
             return place_stl(w, room, largest)
@@ -224,7 +224,7 @@ def _triangles(w: MeshWall, room: Limits, largest: float) -> FloatArray:
 
 
 def triangles(scene: Parts) -> dict[str, FloatArray]:
-    """The triangles of each wall that is not a plane. Raises CaseError for a file that holds no wall."""
+    """The triangles of each wall that is not a plane. Raises CaseError for an invalid wall mesh."""
     largest = max(p.radii()[1] for p in scene.filled)
     room = scene.room.limits
     return {w.name: _triangles(w, room, largest) for w in scene.wall if isinstance(w, MeshWall)}
@@ -323,7 +323,7 @@ def at_end(
 def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
     """Raise CaseError for a wall whose motion takes the centre of a triangle out of the room.
 
-    Not looked at are walls that a force drives, and what comes with a phase that may end early or later.
+    Walls that a force drives, and phases from the first with a condition on, are not checked.
     """
     room = scene.room.limits
     phases = [*takewhile(lambda phase: not phase.condition, scene.phase)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The LAMMPS deck of a scene: one input file, and a data file for the spheres that come with a phase."""
+"""The LAMMPS decks of impacts and of scenes: an input file, and a data file for the spheres of each phase."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,6 +10,8 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...errors import CaseError
+from ...impacts.experiment import Body
+from ...impacts.plan import Plan
 from ...scenes import placement
 from ...scenes.columns import columns_of_frames
 from ...scenes.plan import PhaseSteps, ScenePlan
@@ -25,6 +27,38 @@ WORKS = {  # what dumps call the works and energies of a sphere
     "friction_work": "f_EP_HISTORY0[4]",
     "friction_energy": "f_EP_HISTORY0[5]",
 }
+
+PATH, END = "path.txt", "end.txt"  # dumps of impacts
+
+
+@dataclass(frozen=True)
+class ImpactDeck:
+    """Values of the template of impacts. types: materials of the atom types. pairs: the words of each type. wall: the
+    words of the wall; None: none is hit. columns: of the trajectory.
+    """
+
+    plan: Plan
+    head: decks.Head
+    data: str
+    skin: float
+    types: tuple[str, ...]
+    pairs: tuple[str, ...]
+    wall: str | None
+    oblique: bool
+    columns: str = "z vz fz"
+    path: str = PATH
+    end: str = END
+
+
+def contact(plan: Plan, body: Body, strength: float) -> str:
+    """LAW E nu PARAMETERS [options]: the material of a body and the coefficients of its contacts."""
+    x = plan.experiment
+    found = words.material(x.law.name, body.young_modulus, body.poisson_ratio, strength, x.law.parameters)
+    if x.oblique:
+        found += f" tangential {x.oblique.tangential} {decks.number(x.oblique.friction)}"
+    if x.viscous_restitution is not None:
+        found += f" restitution {decks.number(x.viscous_restitution)}"
+    return found
 
 
 def check(p: ScenePlan) -> None:

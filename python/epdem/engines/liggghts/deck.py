@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The LIGGGHTS deck of a scene: all numbers of the templates."""
+"""The LIGGGHTS decks of impacts and of scenes: all values of the templates."""
 
 import math
 from collections.abc import Sequence
@@ -11,15 +11,16 @@ from ...base import rendering as decks
 from ...base.declarations import declarations
 from ...case.walls import LinearMove
 from ...errors import CaseError
+from ...impacts.plan import Plan
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..host import scene_head
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
 from .macros import ContactWords
-from .primitives import Load, Primitive, loads, primitives, tubes
+from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, wear, work_of_adhesion
-from .scene_parts import Fill, PhaseCommands, Surface, insertions, phases, stl_text, surfaces, table
+from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes, table
 
 WORKS = {  # what dumps call the works and energies of a sphere
     "plastic_work": "f_plasticWork",
@@ -27,8 +28,24 @@ WORKS = {  # what dumps call the works and energies of a sphere
     "friction_work": "f_frictionWork",
     "friction_energy": "f_frictionEnergy",
 }
+PATH = "path.bin"  # dump of impacts
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 LEAST_SPAN = 1e-4  # of all coordinates of a mesh [m]
+
+
+@dataclass(frozen=True)
+class ImpactDeck:
+    """Values of the template of impacts. types: materials of the atom types. wall_type: None: two spheres meet."""
+
+    plan: Plan
+    head: decks.Head
+    contact: ContactWords
+    data: str
+    skin: float
+    types: tuple[str, ...]
+    oblique: bool
+    wall_type: int | None
+    path: str
 
 
 def _properties(p: ScenePlan) -> tuple[Property, ...]:
@@ -165,11 +182,11 @@ class SceneDeck:
     own_skin: bool
     processors: str | None
     primitives: tuple[Primitive, ...]
-    meshes: tuple[Surface, ...]
-    loads_of: tuple[Load, ...]
+    meshes: tuple[SurfaceMesh, ...]
+    loads_of: tuple[WallLoad, ...]
     frozen: tuple[int, ...]
-    insertions: tuple[Fill, ...]
-    phases: tuple[PhaseCommands, ...]
+    insertions: tuple[InsertFix, ...]
+    phases: tuple[DeckPhase, ...]
     open: bool
     stress_walls: tuple[tuple[str, str, bool], ...]
     work_words: tuple[str, ...]
@@ -211,7 +228,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         own_skin=p.case.numerics.skin is not None,
         processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         primitives=primitives(p),
-        meshes=surfaces(p),
+        meshes=surface_meshes(p),
         loads_of=loads(p),
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         insertions=insertions(p),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The tables of a scene from LAMMPS's files. Only this module reads their formats."""
+"""The dumps of impacts and the tables of a scene from LAMMPS's files. Only this module reads their formats."""
 
 from collections.abc import Collection
 from functools import partial
@@ -8,12 +8,22 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ...errors import EngineError
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from ..input_script import torque_origin, wall_id
-from .scene_deck import contact_walls
+from .deck import contact_walls
+from .launcher import LOG
+
+
+def impact_frames(path: Path, frames: int, bodies: int) -> np.ndarray:
+    """A dump without headers and ids, shape (frames, bodies, columns - 1). Raises EngineError if it is incomplete."""
+    try:
+        return np.array(path.read_text(encoding="utf-8").split(), float).reshape(frames, bodies, -1)[:, :, 1:]
+    except (OSError, ValueError) as error:
+        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {LOG} beside it") from None
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:

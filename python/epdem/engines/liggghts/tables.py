@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The tables of a scene from LIGGGHTS's files. Only this module reads its file formats."""
+"""The trajectory of impacts and the tables of a scene from LIGGGHTS's files, whose formats are in `dump`."""
 
+import math
 from collections.abc import Collection
 from functools import partial
 from pathlib import Path
@@ -9,17 +10,37 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EngineError
+from ...impacts.engine import Trajectory
+from ...impacts.plan import Plan, approach
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from . import dump
+from .launcher import LOG
 from .primitives import overlaps, tubes, walls
 
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
 FILES = "stress_{}.{}.vtk"  # wall, step
 COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "normal_stress"}
 COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
+
+END = "end.bin"  # dump of impacts at their end
+
+
+def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
+    """Overlap, force and approach velocity from z, vz, fz of every body. Raises EngineError if samples are missing."""
+    n = plan.n
+    try:
+        z, vz, fz = np.moveaxis(dump.series(path), 2, 0)
+        bodies = n if math.isinf(plan.experiment.target.radius) else 2 * n
+        if z.shape != (plan.steps + 1, bodies):
+            raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
+        vx, spin = dump.series(path.with_name(END))[-1].T if plan.experiment.oblique else (None, None)
+    except (ValueError, IndexError) as error:
+        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {LOG} beside it") from None
+    overlap, velocity = approach(plan, z, vz)
+    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, vx, spin)
 
 
 def _frame(path: Path, count: int) -> np.ndarray:
@@ -62,7 +83,7 @@ def _particle_names(p: ScenePlan) -> list[str]:
 
 
 def _slots(p: ScenePlan) -> list[str]:
-    """The columns of `scene_deck.history_columns`."""
+    """The columns of `deck.history_columns`."""
     return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + [*columns.GROWTH] * p.model.compaction
 
 
