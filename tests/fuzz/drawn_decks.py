@@ -11,6 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from hypothesis import Phase, settings
 
 # Of runs of engines: fewer than of other random input, and none to shrink a deck.
@@ -101,6 +102,15 @@ def run(deck: Deck, command: list[str], folder: Path, environment: dict[str, str
     )
     written = {p.name: p.read_bytes() for p in folder.iterdir() if p.name not in deck.files and p.name != "in.deck"}
     return done.returncode, done.stdout.decode(errors="replace"), written
+
+
+def difference(one: np.ndarray, two: np.ndarray) -> float:
+    """Largest distance of a row of one table from the nearest row of the other, over the largest value."""
+    if len(one) != len(two):
+        return np.inf
+    distance = np.abs(one[:, None] - two[None]).max(axis=2)
+    far = max(distance.min(axis=k).max(initial=0.0) for k in (0, 1))
+    return float(far / np.abs(one).max(initial=1e-300))
 
 
 def rows(words: str) -> list[str]:

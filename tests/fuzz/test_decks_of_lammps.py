@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from drawn_decks import ONE_BY_ONE, Deck, merge, read_features, run, spheres
+from drawn_decks import ONE_BY_ONE, Deck, difference, merge, read_features, run, spheres
 from hypothesis import assume, given, note
 from hypothesis import strategies as st
 
@@ -101,6 +101,7 @@ def motion(deck, folder):
     """Rows by atom at the end, x to omega; None: LAMMPS refused the deck or died, as some do with a rigid body."""
     command = launcher.command("in.deck", ranks=deck.ranks)
     code, _, files = run(deck, command, folder, launcher.environment())
+    assume(code != 124)
     if code:
         return None
     return np.loadtxt(files["end.txt"].decode().splitlines()[9:], ndmin=2)
@@ -130,13 +131,18 @@ def test_hertz_has_the_motion_of_the_own_model_of_lammps(seed, tmp_path_factory)
 
 @ONE_BY_ONE
 @given(seed=st.integers(0, 10**9))
-def test_other_lists_and_ranks_change_no_motion(seed, tmp_path_factory):
+def test_other_lists_ranks_and_numbers_change_no_motion(seed, tmp_path_factory):
+    """New numbers follow the places between the runs; velocities and spins are alike, whichever their numbers."""
     names, at, words, half, data = draw(seed)
     note(", ".join(names))
     folder = tmp_path_factory.mktemp("deck")
+    anew = at | {"between": [*at["between"], "reset_atoms id sort yes"]}
     one = motion(deck_of(at, words, half, data), folder / "one")
-    two = motion(deck_of(at, words, half, data, other_lists=True, ranks=2), folder / "two")
-    assert_equal(one, two, 1e-6)
+    two = motion(deck_of(anew, words, half, data, other_lists=True, ranks=2), folder / "two")
+    assert (one is None) == (two is None)
+    assume(one is not None)
+    for columns in (slice(4, 7), slice(7, 10)):
+        assert difference(one[:, columns], two[:, columns]) <= 1e-6
 
 
 @ONE_BY_ONE
