@@ -19,6 +19,7 @@ from epdem.errors import CaseError
 from epdem.scenes import report, stages
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
+from epdem.scenes.warnings import planned_warnings
 from epdem.studies.pages import scene_page, scene_sentences
 
 SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
@@ -273,3 +274,20 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     assert both.to_list() == pytest.approx([math.sqrt(2.0) * number], rel=1e-12)
     slow = replace(p, phases=tuple(p.phases[:1]))
     assert stages.warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []
+
+
+def test_walls_of_a_press_that_never_yield_beside_some_spheres_are_told():
+    """A body does not yield beside one of less than 1.6/2.8 of its strength: the pressures of first and full yield."""
+    data = press(walls="hard")
+    both = [{"material": name, "radius": "50 um", "share": 0.5} for name in ("powder", "hard")]
+
+    def said(strength, **scene):
+        data["materials"]["hard"] = data["materials"]["powder"] | {"yield_stress": f"{strength} MPa"}
+        return planned_warnings(plan(parse(data | {"scene": data["scene"] | scene})))
+
+    for scene in ({}, {"particles": both}):
+        (sentence,) = said(176, **scene)
+        assert sentence.startswith("walls of 'hard' never yield beside spheres of 'powder'")
+        assert "give the walls the material 'powder'" in sentence and said(174, **scene) == []
+    assert said(176, particles=both, walls="powder") == []
+    assert said(176, particles=[both[1] | {"share": 1.0}]) == []

@@ -36,7 +36,7 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    found = _law(p) + filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
+    found = _law(p) + _hard_walls(p) + filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
     return found + _time_steps(p) + _durations(p) + _overlaps(p) + _walls(p)
 
 
@@ -51,6 +51,26 @@ def _law(p: ScenePlan) -> list[str]:
     return [
         f"law.name = {name!r}: a bed that is pressed with this law {text} (docs/choose.md, Pressing); take law.name = "
         "'cavity' with finite_strain = true and compaction = true"
+    ]
+
+
+def _hard_walls(p: ScenePlan) -> list[str]:
+    """Walls of a press that never yield beside some of its spheres, which pass through them at high pressure."""
+    if not (p.scene.stages and p.model.compaction):
+        return []
+    types, shares = p.model.types, p.model.shares()
+    filled = [n for n, t in enumerate(types) if t.material in {part.material for part in p.scene.filled}]
+    soft = {
+        w.material: types[n].material
+        for w, wall in ((w, p.wall_types[w.name] - 1) for w in p.scene.wall)
+        for n in filled
+        if shares[n][wall] == 1.0 and types[n].strength < types[wall].strength
+    }
+    return [
+        f"walls of {wall!r} never yield beside spheres of {name!r}: the force of such a contact grows up to an overlap "
+        f"of 0.9 radii only, and at high pressure spheres pass through; give the walls the material {name!r} (their "
+        "friction is contact.wall_friction)"
+        for wall, name in soft.items()
     ]
 
 
