@@ -17,7 +17,9 @@ from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts import report
+from epdem.impacts.engine import oblique_pairs
 from epdem.impacts.experiment import experiment
+from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
 from epdem.verification.theory import oblique
@@ -141,6 +143,25 @@ def test_predict_and_the_reasons_of_a_deck_know_oblique_impacts(capsys, tmp_path
         app(words, standalone_mode=False)
     text = capsys.readouterr().out + (tmp_path / "deck/in.impact").read_text()
     assert "psi_2" in text and "tangential ep/partial_slip" in text and "velocity and spin after the impact" in text
+
+
+def test_spheres_that_turn_about_each_other_approach_along_their_line_of_centres():
+    """Samples of a distance and an angle that are given: the spheres touch from 3 to 17."""
+    sphere = {"radius": "10 mm", "material": "steel"}
+    x = experiment(cases.parse(data(kind="sphere-sphere", target=sphere, angles=["30 deg"], speeds=["1 m/s"])))
+    p, turn, k = plan(x, predict(x)), 0.01, np.arange(21)[:, None]
+    overlap = 1e-5 * (1 - ((k - 10) / 8) ** 2) + np.zeros(p.n)
+    distance, parting = 0.02 - overlap, 1e-5 * (k - 10) / 32
+    normal = np.stack([np.sin(turn * k), np.cos(turn * k)])
+    across = np.stack([normal[1], -normal[0]])
+    half = 0.5 * distance * normal, 0.5 * (parting * normal + turn * distance * across)
+    load = 1e6 * np.maximum(overlap, 0.0)
+    place, velocity, force = (np.concatenate([a, -a], axis=2) for a in (*half, load * normal))
+    found = oblique_pairs(p, place, velocity, force, np.zeros(p.n), {})
+    for values, expected in ((found.overlap, overlap), (found.velocity, 0 * overlap - parting), (found.force, load)):
+        assert np.isnan(values[:, 19:]).all()
+        assert values[:, :19] == pytest.approx(expected[:19].T, rel=1e-9, abs=1e-12)
+    assert found.tangential == pytest.approx(turn * distance[18], rel=1e-9)
 
 
 HOSTS = [pytest.param("lammps", marks=needs_lammps), pytest.param("yade", marks=pytest.mark.yade("module"))]
