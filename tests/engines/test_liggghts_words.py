@@ -7,16 +7,14 @@ import struct
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from test_stopping import alive, until
 
-from epdem.base import paths
 from epdem.base.processes import call
 from epdem.engines import log
-from epdem.engines.liggghts import dump, launcher, resume
+from epdem.engines.liggghts import dump, launcher
 from epdem.engines.liggghts.scene_parts import stl_text
 from epdem.errors import CaseError, EngineError
 
@@ -178,19 +176,3 @@ def test_nothing_is_written_outside_the_output_folder(tmp_path):
     assert [p.name for p in here.iterdir()] == ["log.liggghts"]
     assert (here / "log.liggghts").read_text() == "the user's own"
     assert (tmp_path / "out/results.h5").exists()
-
-
-@pytest.mark.parametrize("styles", ["custom image", "custom custom/vtk image"])
-def test_vtk_files_are_refused_where_liggghts_was_built_without_vtk(styles, tmp_path, monkeypatch):
-    program = tmp_path / "lmp_auto"
-    program.write_text(f"#!/bin/sh\necho '* Dump styles'; echo; echo '{styles}'; echo; echo '* Fix styles'\n")
-    program.chmod(0o755)
-    monkeypatch.setenv("EPDEM_LIGGGHTS", str(program))
-    paths.launcher.cache_clear()
-    try:
-        resume.run(SimpleNamespace(vtk=5), tmp_path, ranks=1, report=lambda step: None)
-        assert "custom/vtk" in styles
-    except CaseError as refusal:
-        assert "custom/vtk" not in styles and f"output.vtk: {program} was built without VTK" in str(refusal)
-    finally:
-        paths.launcher.cache_clear()

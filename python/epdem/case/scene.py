@@ -89,7 +89,6 @@ class Output(Frozen):
     contacts: Annotated[int, Field(ge=0, le=10_000)] = 0
     energy: bool = False  # the energy balance: particles and contacts of the same steps, plastic work of every contact
     loads: bool = False  # forces on the walls
-    vtk: Annotated[int, Field(ge=0, le=10_000)] = 0
     pictures: Annotated[int, Field(ge=0, le=10_000)] = 0
     restarts: Annotated[int, Field(ge=0, le=1000)] = 0
     color: PartName = "speed"  # of the spheres in bed.png: a column of the frames, speed or energy

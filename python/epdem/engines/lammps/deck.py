@@ -66,7 +66,6 @@ def check(p: ScenePlan) -> None:
     m, out = p.model, p.output
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
-    refuse("output.vtk", out.vtk, "there is no VTK output; output.particles holds the same")
     refuse("output.pictures", out.pictures, "there are none")
     for fill in p.insertions:
         refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")

@@ -49,7 +49,6 @@ class Liggghts(Host):
         "contacts.*.txt",
         "wall_contacts.*.txt",
         "restart.*.bin",
-        "scene_*.vtk",
         "stress_*.vtk",
         "picture.*.ppm",
         "in.resume",

@@ -62,9 +62,6 @@ def run(deck: str, folder: Path, *, ranks: int = 1, log: str = "none", out: str 
     return call(command(deck, ranks=ranks, log=log), folder, log=out, env=environment(ranks), **how)
 
 
-_VTK = "custom/vtk"  # the dump style of output.vtk
-
-
 @dataclass(frozen=True)
 class Executable:
     """`version` is "" for a program that does not say it; `models` are the models of epdem that it has."""
@@ -87,11 +84,6 @@ def version(path: Path) -> str:
     return _version(_help(path))
 
 
-def writes_vtk(path: Path) -> bool:
-    """Whether it was built with VTK. Raises EngineError."""
-    return _VTK in _styles(_help(path), "Dump styles")
-
-
 def examine(path: Path, laws: tuple[str, ...]) -> Executable:
     """Parts of a LIGGGHTS, found by one short run for each of `laws`. Raises EngineError if it does not start."""
     text = _help(path)
@@ -99,7 +91,7 @@ def examine(path: Path, laws: tuple[str, ...]) -> Executable:
         path,
         _version(text),
         superquadrics="superquadric" in _styles(text, "Atom styles"),
-        vtk=_VTK in _styles(text, "Dump styles"),
+        vtk="custom/vtk" in _styles(text, "Dump styles"),
         mpi="libmpi" in captured_output(["ldd", str(path)]) if shutil.which("ldd") else False,
         models=tuple(law for law in laws if _has(law)),
     )

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from ...base import paths
 from ...base import rendering as decks
-from ...errors import CaseError, EngineError
+from ...errors import EngineError
 from ...jobs.engine import Report
 from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
@@ -23,7 +22,6 @@ from .scene_parts import InsertFix
 
 def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
     """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
-    _refuse_vtk(plan)
     with _lost_walls_named(folder):
         launcher.run("in.scene", folder, ranks=ranks, report=pruning(folder, report))
 
@@ -46,21 +44,11 @@ def _lost_walls_named(folder: Path) -> Iterator[None]:
 
 def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
     """Continue a run from its newest restart file. Raises CaseError, EngineError."""
-    _refuse_vtk(plan)
     step, lost = choose(plan, folder, folder / launcher.OUT, tables.damaged)
     script = write_resume(plan, folder, step)
     with _lost_walls_named(folder):
         launcher.run(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
     return Resumed(step, lost)
-
-
-def _refuse_vtk(plan: ScenePlan) -> None:
-    path = paths.launcher()
-    if plan.vtk and path and not launcher.writes_vtk(path):
-        raise CaseError(
-            f"output.vtk: {path} was built without VTK; leave output.vtk out (output.particles holds the same), or "
-            "take a LIGGGHTS with VTK"
-        )
 
 
 def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[InsertFix]:
