@@ -2,15 +2,18 @@
 """Output and exit code of the studies of the runner."""
 
 import json
+from typing import TYPE_CHECKING
 
 import typer
 
 from ...base.terminal import console, show_table
-from ..runner import Outcome
 from ..tables import frame_table
 
+if TYPE_CHECKING:  # slow to import
+    from ..runner import Outcome
 
-def answer(outcome: Outcome, as_json: bool, note: str) -> typer.Exit:
+
+def answer(outcome: "Outcome", as_json: bool, note: str) -> typer.Exit:
     """Print the rows of a study, and a line with its files; the exit code is 1 if a row has not passed."""
     from ...impacts.report import records
 
