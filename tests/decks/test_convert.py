@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from epdem.cli.main import app
+from epdem.engines.liggghts import launcher
 from epdem.engines.liggghts.deck_checks import check
 from epdem.engines.liggghts.own_decks import convert
 from epdem.errors import CaseError
@@ -183,3 +184,37 @@ def test_a_good_deck_and_values_that_the_deck_computes_give_no_sentence(tmp_path
     assert done.exit_code == 0 and place in done.stderr
     path.write_text("units si\n")
     assert "name a LIGGGHTS deck" in str(CliRunner().invoke(app, ["deck", str(path), "--check"]).exception)
+
+
+RESTART = """units si
+atom_style granular
+atom_modify map array
+newton off
+communicate single vel yes
+{begin}
+neighbor 0.001 bin
+fix m1 all property/global youngsModulus peratomtype 5e6
+fix m2 all property/global poissonsRatio peratomtype 0.3
+fix m3 all property/global coefficientRestitution peratomtypepair 1 0.5
+fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep 1e-5
+fix {wall} all wall/gran model hertz tangential history primitive type 1 zplane 0.0
+"""
+BOX = """region r block -0.01 0.01 -0.01 0.01 -0.001 0.02 units box
+create_box 1 r"""
+
+
+@pytest.mark.liggghts
+def test_walls_that_lose_their_contacts_in_a_restart_are_named(tmp_path):
+    written = RESTART.format(begin=BOX, wall="floor") + "create_atoms 1 single 0 0 0.001 units box\n"
+    written += "set group all diameter 0.002 density 2500\nfix move all nve/sphere\nrun 1\n"
+    (tmp_path / "first.in").write_text(written + "write_restart bed.restart\n")
+    launcher.run("first.in", tmp_path)
+    place = tmp_path / "next.in"
+    begin = "read_restart bed.restart"
+    assert check(RESTART.format(begin=begin, wall="floor"), place) == []
+    (said,) = check(RESTART.format(begin=begin, wall="bottom"), place)
+    assert "bed.restart holds the contacts of walls floor, and walls bottom of the deck begin without any" in said
+    assert check(RESTART.format(begin=begin, wall="bottom"), tmp_path / "elsewhere/next.in") == []

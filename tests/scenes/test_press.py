@@ -21,6 +21,7 @@ from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 from epdem.studies.pages import scene_page, scene_sentences
+from epdem.studies.sweep.table import numbers_of
 
 SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
 PRESSURES = [10e6, 40e6]
@@ -121,6 +122,8 @@ def test_rows_have_height_and_density_and_the_page_the_table_of_stages(pressed):
     assert last["height"] == pytest.approx(height, rel=1e-9) and units(rows)["height"] == "m"
     volume = COUNT * 4 / 3 * math.pi * RADIUS**3
     assert last["relative_density"] == pytest.approx(volume / (SIDE**2 * height), rel=1e-9)
+    dense = pressed.results.tables["stages"].set_index("phase")["relative_density"]["stage2"]
+    assert numbers_of(pressed.results)["relative_density_max"] == pytest.approx(dense, rel=3e-3)  # a target of a fit
     (part,) = [part for part in scene_page(pressed).parts if getattr(part, "title", "") == "Stages"]
     assert part.frame is pressed.results.tables["stages"] and "the force of an ejection is no result" in part.note
 

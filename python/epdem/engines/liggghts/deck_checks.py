@@ -23,13 +23,16 @@ _VARIABLE = re.compile(r"\$\{(\w+)\}|\$(\w)")
 
 @dataclass
 class _Deck:
-    """Statements of a deck: properties with places and values, words of the models, smallest sphere, time steps."""
+    """Statements of a deck: properties with places and values, words of the models, smallest sphere, time steps, ids of
+    walls without a mesh, restart files that are read."""
 
     properties: dict[str, tuple[str, list[float]]] = field(default_factory=dict)
     models: list[tuple[str, list[str]]] = field(default_factory=list)
     spheres: list[tuple[float, float]] = field(default_factory=list)  # radius, density, in the units of the deck
     steps: list[tuple[str, float]] = field(default_factory=list)
     known: dict[str, str] = field(default_factory=dict)  # variables with a plain value
+    walls: list[str] = field(default_factory=list)
+    restarts: list[tuple[str, str]] = field(default_factory=list)
 
     def number(self, word: str) -> float:
         """The value of a word; NaN if the deck computes it."""
@@ -55,8 +58,11 @@ def _read(text: str, place: Path) -> _Deck:
                 deck.properties[name] = (where, [deck.number(v) for v in values])
             case ["pair_style", *rest] if "gran" in rest:
                 deck.models.append((where, rest))
-            case ["fix", _, _, "wall/gran", *rest]:
+            case ["fix", name, _, "wall/gran", *rest]:
                 deck.models.append((where, rest))
+                deck.walls += [name] if "primitive" in rest else []
+            case ["read_restart", name, *_]:
+                deck.restarts.append((where, name))
             case ["timestep", value]:
                 deck.steps.append((where, deck.number(value)))
             case ["fix", _, _, "particletemplate/sphere", *rest]:
@@ -79,7 +85,13 @@ def _model(words: list[str]) -> str:
 def check(text: str, place: Path) -> list[str]:
     """A sentence for each input of the deck `text` that is probably wrong; `place` names the deck."""
     deck = _read(text, place)
-    return [*_adhesion(deck), *_strength(deck), *_restitution(deck), *_steps(deck)]
+    return [
+        *_adhesion(deck),
+        *_strength(deck),
+        *_restitution(deck),
+        *_steps(deck),
+        *_histories(deck, Path(place).parent),
+    ]
 
 
 def check_file(path: Path) -> list[str]:
@@ -156,4 +168,17 @@ def _steps(deck: _Deck) -> Iterator[str]:
             yield (
                 f"{where}: timestep {step:g} is above Rayleigh's time of the smallest sphere, {limit:.3g}: contacts "
                 "create energy; give a fifth of it, or less"
+            )
+
+
+def _histories(deck: _Deck, folder: Path) -> Iterator[str]:
+    """Walls whose histories a restart file holds under other ids; a file that is not there is not judged."""
+    for where, name in deck.restarts:
+        stored = (folder / name).read_bytes() if (folder / name).is_file() else b""
+        before = {text.decode() for text in re.findall(rb"(?<!\w)history_(\w+)", stored)}
+        lost, new = sorted(before - {*deck.walls}), [wall for wall in deck.walls if wall not in before]
+        if lost and new:
+            yield (
+                f"{where}: {name} holds the contacts of walls {', '.join(lost)}, and walls {', '.join(new)} of the "
+                "deck begin without any, in silence; give walls the ids that they had when the file was written"
             )
