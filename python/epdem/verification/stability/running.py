@@ -4,7 +4,7 @@
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
 from ...impacts.plan import stability_limit, starting_phases
-from ...impacts.prediction import Prediction, predict
+from ...impacts.prediction import predict
 from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .sampling import Sampler
@@ -74,44 +74,28 @@ class Setting:
 def setting(extreme: Extreme, law: str) -> Setting:
     """Theory of an extreme case, with the work already stored in an overlap at t = 0."""
     x = extreme.experiment(law)
-    prediction = predict(x)
-    if x.law.adheres:
-        return _with_adhesion(x, prediction)
-    theory = x.backbone()
-    kinetic, top = 0.5 * x.m_star * float(x.speed[0]) ** 2, float(prediction.overlap_max[0])
-    start = None if extreme.start is None else extreme.start * top
-    energy = kinetic + (float(theory.work(start)) if start else 0.0)
-    if start:
-        top = float(theory.overlap_of_work(energy))
+    p, kinetic = predict(x), 0.5 * x.m_star * float(x.speed[0]) ** 2
+    names = ("overlap_max", "residual_overlap", "e_n", "contact_time", "strain")
+    top, residual, e_n, contact_time, strain = (float(getattr(p, name)[0]) for name in names)
+    lost = x.theory().lost_work
+    limit = float(stability_limit(x, top))
+    found = Setting(x, None, kinetic, top, top - residual, e_n, limit, contact_time, strain, lost)
+    if extreme.start is None:
+        return found
+    theory, start = x.backbone(), extreme.start * top
+    energy = kinetic + float(theory.work(start)) if start else kinetic
+    top = float(theory.overlap_of_work(energy)) if start else top
     elastic = top <= theory.yield_overlap
     out = energy if elastic else float(theory.recovered_work(top))
-    recovered = top if elastic else float(theory.recovered_overlap(top))
-    return Setting(
-        x,
-        start,
-        energy,
-        top,
-        recovered,
-        float(np.sqrt(out / kinetic)),
-        float(stability_limit(x, top)),
-        float(prediction.contact_time[0]),
-        float(x.law.share * theory.radius(top) / x.R_star),
-        theory.plastic_work,
-    )
-
-
-def _with_adhesion(x: Experiment, p: Prediction) -> Setting:
-    return Setting(
-        x,
-        None,
-        0.5 * x.m_star * float(x.speed[0]) ** 2,
-        float(p.overlap_max[0]),
-        float(p.overlap_max[0] - p.residual_overlap[0]),
-        float(p.e_n[0]),
-        float(stability_limit(x, float(p.overlap_max[0]))),
-        float(p.contact_time[0]),
-        float(p.strain[0]),
-        x.theory().lost_work,
+    return replace(
+        found,
+        start=start,
+        energy=energy,
+        overlap_max=top,
+        recovered=top if elastic else float(theory.recovered_overlap(top)),
+        e_n=float(np.sqrt(out / kinetic)),
+        limit=float(stability_limit(x, top)),
+        strain=float(x.law.share * theory.radius(top) / x.R_star),
     )
 
 
