@@ -25,7 +25,7 @@ from epdem.verification import contacts, cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
 from epdem.verification import measured_data as validate
 from epdem.verification.motion import compare as motions
-from epdem.verification.stability import bulk_cost
+from epdem.verification.stability import bulk
 
 STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
@@ -128,14 +128,14 @@ def outcomes(tmp_path_factory):
     """A small outcome of each study."""
     path = tmp_path_factory.mktemp("outcomes") / "steel.toml"
     path.write_text(FAST)
-    numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0, "seconds": 0.01, "ratio": 0.9}
+    numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0}
     many = FAST.replace('["1 m/s"]', '{ from = "0.1 m/s", to = "1 m/s", count = 12 }')
     twelve = path.with_name("twelve.toml")
     twelve.write_text(many)
     return {
         "run": impacts_run.run(twelve, engines=[engine("embedded")], out=path.parent / "run"),
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
-        "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
+        "bulk": pd.DataFrame([{"model": "x", "spheres": 8} | numbers]),
         "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
     }
 
@@ -165,7 +165,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(motions, "compare")
     record(contacts, "compare")
     record(cost, "run", outcomes["cost"])
-    record(bulk_cost, "run", outcomes["bulk"])
+    record(bulk, "convergence", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
     record(figures, "draw_all", [Path("drawn.png")])
     record(sweep_run, "run")

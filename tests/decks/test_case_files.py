@@ -36,9 +36,8 @@ def changed(place: str, value):
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
 def test_every_case_of_the_project_is_valid(path):
-    data = read_toml(path)
-    if "impact" in data:
-        assert experiment(load(path)).name == path.stem
+    case = scene.load(path) if scene.is_scene(read_toml(path)) else experiment(load(path))
+    assert case.name == path.stem
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ def cost(
     engine: Engines = None,
     law: Laws = None,
     repetitions: Annotated[int, typer.Option(min=1, max=100, help="repetitions of every timed run, interleaved")] = 5,
-    bulk: Annotated[bool, typer.Option(help="run a bulk scene in LIGGGHTS as well")] = False,
+    bulk: Annotated[bool, typer.Option(help="also find the error of a bulk scene's plastic work in LIGGGHTS")] = False,
     pictures: Formats = None,
     out: Out = None,
     force: Force = False,
@@ -32,6 +32,11 @@ def cost(
     scene, kinds = None, formats(pictures)
     folder = results_folder(out, load(case).name, "cost")
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
+        if bulk:
+            from ...engines import DEFAULT_ENGINE, scene_engine
+            from ..stability.bulk import convergence
+
+            scene = convergence(law or [load(case).law.name], scene_engine(DEFAULT_ENGINE), progress=progress)
         outcome = study.run(
             case,
             engines=engine or [],
@@ -39,10 +44,6 @@ def cost(
             repetitions=repetitions,
             progress=progress,
         )
-        if bulk:
-            from ..stability import bulk_cost
-
-            scene = bulk_cost.run(law or [outcome.case.law.name], progress=progress)
         files = [*cost_report.write(outcome, folder, kinds), of_cost(outcome, scene, folder)]
     if as_json:
         document = {

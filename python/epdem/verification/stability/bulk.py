@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Stiff bulk scenes of `bulk.toml`: their energy balance, and the same scene on several ranks."""
 
+import math
 import shutil
 import tempfile
 import tomllib
@@ -14,19 +15,25 @@ import pandas as pd
 from ...base.files import write_texts
 from ...case.scene import SceneCase, parse
 from ...case.units import to_si
-from ...laws.strengths import default_numbers, yields_by_stress
+from ...errors import CaseError
+from ...laws.strengths import default_numbers, find_law, yields_by_stress
 from ...scenes.checks import energy_balance
 from ...scenes.engine import SceneEngine
+from ...scenes.model import pair_law
 from ...scenes.plan import ScenePlan, plan
 from ...scenes.run import run_plan
 from ...scenes.timestep import stable_step
 from ...theory.backbones import LAWS
 from ..runner import STUDIES, Progress, Row, silent
+from .two_walls import stored
 
 SCENES: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 RADIUS, DENSITY, POISSON = 5e-3, 7800.0, 0.3
 SHARE = 0.02  # of the stability limit at the highest speed: e_n within 1e-4
 FRAMES = 40
+LATTICE = (8, 8, 8)  # of the convergence of the dissipated energy
+SHARES = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the stability limit at the highest speed
+FINEST = 0.25  # share of the finest step, of the run that errors are against: an error of order 2 is known to 1/16
 
 
 def _spheres(about: dict[str, Any], lattice: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -127,13 +134,33 @@ def differences(one: pd.DataFrame, two: pd.DataFrame) -> np.ndarray:
     return np.asarray(off.groupby("step").max())
 
 
+def _elastic(p: ScenePlan, contacts: pd.DataFrame) -> np.ndarray:
+    """Elastic energy [J] of each contact, by theory from its overlaps now and at the most, shape (contacts,)."""
+    material = np.array([sphere.material for sphere in p.scene.table])
+    flat = (contacts["wall"] != "").to_numpy()
+    first, second = (material[contacts[side].to_numpy() - 1] for side in "ij")
+    pairs = pd.DataFrame({"a": first, "b": np.where(flat, "m0", second), "flat": flat})
+    alpha, energy = contacts["overlap"].to_numpy(), np.zeros(len(contacts))
+    top = np.maximum(contacts["delta_max"].to_numpy(), alpha)
+    for (one, other, plane), at in pairs.groupby(["a", "b", "flat"]).indices.items():
+        spec, E_star = pair_law(p.case, one, other)
+        theory = spec.backbone(E_star=E_star, R_star=RADIUS if plane else RADIUS / 2, radius=RADIUS)
+        energy[at] = stored(theory, alpha[at], top[at]) - theory.plastic_work(top[at])
+    return energy
+
+
 def balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """The energy balance [J], with the work of a plate by trapezoids.
+    """The energy balance [J] with elastic energies of theory, which no law computes, and work of a plate by trapezoids.
 
     A row has the mean power of the steps up to its end, of which the last counts half; the force at the end is that of
     the contacts of the frame.
     """
     table, contacts = energy_balance(p, tables), tables["contacts"]
+    by_step = contacts.assign(theory=_elastic(p, contacts)).groupby("step")["theory"].sum()
+    elastic = by_step.reindex(table["step"], fill_value=0.0).to_numpy()
+    change = elastic - table["elastic"].to_numpy()
+    table["balance"] += change - change[0]
+    table["elastic"] = elastic
     for wall in p.scene.meshes:
         force = contacts[contacts["wall"] == wall].groupby("step")["force"].sum().reindex(table["step"], fill_value=0.0)
         table["balance"] -= 0.5 * p.time_step * p.phases[-1].velocity(wall)[2] * force.to_numpy()
@@ -185,3 +212,42 @@ def run(laws: list[str], tool: SceneEngine, *, progress: Progress = silent) -> p
             shutil.rmtree(scratch)
             Path(scratch).mkdir()
     return pd.DataFrame(rows)
+
+
+def _dissipated(law: str, time_step: float, tool: SceneEngine, folder: Path) -> np.ndarray:
+    """Plastic work of every sphere of two blocks that have met [J], shape (spheres,)."""
+    case = scene_case("shock", law, folder, lattice=LATTICE, rows=1, particles=1, energy=True)
+    frames = run_plan(with_step(case, time_step), tool, folder)["particles"]
+    last = frames[frames["step"] == frames["step"].max()].sort_values("id")
+    return np.asarray(last["plastic_work"])
+
+
+def convergence(
+    laws: list[str], tool: SceneEngine, *, shares: tuple[float, ...] = SHARES, progress: Progress = silent
+) -> pd.DataFrame:
+    """Error of the mean dissipated energy, and `rms` error of a sphere's, both over the mean; a row per law and share.
+
+    The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow. All
+    laws take the same steps, shares of the smallest of their stability limits at the highest speed. The mean's error
+    may pass through zero, as those of single spheres have either sign; `order` is that of the rms between neighbouring
+    shares. Laws without plastic work are left out. Raises CaseError if no other is given, EngineError.
+    """
+    tables = []
+    yielding = [law for law in laws if find_law(law).memory and not find_law(law).adheres]
+    if not yielding:
+        raise CaseError(f"--bulk: {' and '.join(laws)} dissipates nothing; name a law that yields, or leave it out")
+    with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
+        folder = Path(scratch)
+        least = min(limit(scene_case("shock", law, folder, lattice=LATTICE)) for law in yielding)
+        for law in yielding:
+            progress(f"bulk error: {law}, reference")
+            reference, deviations = _dissipated(law, FINEST * min(shares) * least, tool, folder), []
+            for share in shares:
+                progress(f"bulk error: {law}, {share:g} of the limit")
+                deviations.append(_dissipated(law, share * least, tool, folder) / reference.mean())
+            off = np.array(deviations) - reference / reference.mean()
+            table = pd.DataFrame({"model": f"{tool.name}, {law}", "spheres": math.prod(LATTICE), "share": list(shares)})
+            table["error"], table["rms"] = np.abs(off.mean(axis=1)), np.sqrt((off**2).mean(axis=1))
+            table["order"] = np.log(table["rms"]).diff() / np.log(table["share"]).diff()
+            tables.append(table)
+    return pd.concat(tables, ignore_index=True)
