@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Kinds of scenes: files with keys, their units and limits at the head, and below them the TOML of a scene of parts.
 
-The kinds of epdem are in templates/kinds; a case names one of its own by its path ("./mill.toml.j2").
+The kinds of epdem are in templates/kinds; a case names a kind of the user by its path ("./mill.toml.j2").
 """
 
 import math

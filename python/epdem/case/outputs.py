@@ -106,7 +106,7 @@ class Stages(Frozen):
 
 
 class MeasuredDensities(Frozen):
-    """Measured relative densities of a powder under pressure beside those of a press in figure and page; no check uses
+    """Measured relative densities of a powder under pressure, in figure and page beside the computed; no check uses
     them."""
 
     source: Line

@@ -139,7 +139,7 @@ def portable_text(path: Path | str) -> str:
 
 
 def strength_keys() -> tuple[str, ...]:
-    """Keys of a material's strength, of which one may be given: its own ones, then those of the laws."""
+    """Keys of a material's strength, of which one may be given: of any law, then of one law each."""
     laws = [law.strength for law in declarations().values() if law.strength]
     return tuple(dict.fromkeys(["yield_stress", "hardness", "yield_ratio", *laws]))
 

@@ -136,7 +136,7 @@ def row_words(p: ScenePlan) -> Iterator[str]:
 
 
 def first_look(p: ScenePlan, run: PhaseSteps) -> int:
-    """The steps of a phase before its condition is looked at."""
+    """The steps of a phase before its condition is evaluated."""
     rows = math.ceil(run.phase.case.condition_from / run.phase.time_step / p.every)
     return min(run.steps, p.every * max(1, rows))
 

@@ -101,7 +101,7 @@ def restitution(outcome: Outcome) -> Chart:
 
 def _beside_fit(fit: float, lines: list[tuple[Experiment, Prediction]]) -> str:
     """Sentences on the deviation of each law from the finite-element fit at the last speed of its line."""
-    said = " The fit is that of Wu et al. 2003 from 100 times the speed of first yield on."
+    said = " The fit by Wu et al. 2003 begins at 100 times the speed of first yield."
     for x, line in lines:
         top, radius = float(line.overlap_max[-1]), float(line.radius_max[-1])
         deviation = float(line.e_n[-1]) / fit - 1.0

@@ -211,7 +211,7 @@ def mark(outcome: Outcome, *facts: object) -> str:
 def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
     """Draw e_n, restitution against speed with theory and errors, or psi if oblique; the first of its files.
 
-    Pictures that show these very runs already are left as they are: the PNG file carries the hash of their inputs.
+    Pictures of the same runs are not drawn again: the PNG file carries the hash of their inputs.
     """
     name, digest = ("psi" if outcome.case.impact.oblique else "e_n"), mark(outcome)
     paths = [outcome.folder / f"{name}.{kind}" for kind in formats]

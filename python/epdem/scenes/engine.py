@@ -14,7 +14,7 @@ from .plan import ScenePlan
 
 @dataclass(frozen=True)
 class Resumed:
-    """From which step a run went on; `lost`: steps of earlier frames that are missing or not whole."""
+    """Step from which a run was continued; `lost`: steps of earlier frames that are missing or not whole."""
 
     step: int
     lost: list[int] = field(default_factory=list)

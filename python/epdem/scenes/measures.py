@@ -9,7 +9,7 @@ import pandas as pd
 from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
-from .columns import columns_of_rows, last_frame
+from .columns import body_pairs, columns_of_rows, last_frame
 from .meshes import FloatArray
 from .model import pair_law
 from .plan import ScenePlan
@@ -198,18 +198,14 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     contacts = tables["contacts"]
     largest = contacts.groupby(["wall", "i", "j"], as_index=False)["delta_max"].max()
-    spheres = tables["particles"].groupby("id")[["radius", "mass", "type"]].first()
-    first, second = spheres.reindex(largest["i"]), spheres.reindex(largest["j"])
-    other = np.where(largest["j"] == 0, largest["wall"].map(p.wall_types), second["type"]).astype(int)
-    R_star = 1.0 / (1.0 / first["radius"].to_numpy() + 1.0 / second["radius"].fillna(math.inf).to_numpy())
-    m_star = 1.0 / (1.0 / first["mass"].to_numpy() + 1.0 / second["mass"].fillna(math.inf).to_numpy())
-    types = pd.DataFrame({"a": first["type"].to_numpy(int), "b": other})
+    both = body_pairs(p, largest, tables["particles"])
+    types = pd.DataFrame({"a": both.type_i, "b": both.type_j})
     speeds = np.zeros(len(types))
     for (a, b), at in types.groupby(["a", "b"]).indices.items():
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
-        law = spec.backbone(E_star=E_star, R_star=R_star[at], radius=first["radius"].to_numpy()[at])
+        law = spec.backbone(E_star=E_star, R_star=both.R_star[at], radius=both.radius_i[at])
         work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
-        speeds[at] = np.sqrt(2.0 * work / m_star[at])
+        speeds[at] = np.sqrt(2.0 * work / both.m_star[at])
     return speeds
 
 

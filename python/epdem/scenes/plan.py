@@ -297,16 +297,16 @@ class ScenePlan:
             kind, vectors = ("torque", [turn.axis]) if turn else ("force", ways)
             if not (turn or moves):
                 continue
-            told = [
+            suitable = [
                 row
                 for row in self.scene.row
                 if (row.wall, row.quantity, row.area) == (name, kind, None)
                 and len(ways) == len(moves) * (not turn)
                 and all(k == row.axis or not x for vector in vectors for k, x in enumerate(vector))
             ]
-            if not told:
+            if not suitable:
                 return ()
-            found += told[:1]
+            found += suitable[:1]
         return tuple(found)
 
     @property

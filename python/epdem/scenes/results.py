@@ -94,7 +94,7 @@ def read(path: Path | str) -> SceneResults:
 
 
 def engine_tables(p: ScenePlan, tables: Tables) -> Tables:
-    """The tables of an engine run among those of a results file, without what measures and checks have added."""
+    """The tables of an engine run among those of a results file, without columns of measures."""
     found = {name: tables[name] for name in ENGINE_TABLES if name in tables}
     rows = found["rows"]
     return found | {"rows": rows[[name for name in rows if name in columns_of_rows(p)]]}
@@ -147,7 +147,7 @@ def write_vtkhdf(file: h5py.File, p: ScenePlan, tables: dict[str, pd.DataFrame])
 def _add_contacts(
     blocks: "_Blocks", stored: h5py.Group, contacts: pd.DataFrame, spheres: pd.DataFrame, steps: np.ndarray
 ) -> None:
-    """A line for each contact, from the centre of the first sphere to that of the second or to the wall."""
+    """A line for each contact, from the centre of the first sphere to the centre of the second or to the wall."""
     known = spheres.set_index(["step", "id"])
     one, other = (known.reindex(pd.MultiIndex.from_frame(contacts[["step", body]])) for body in ("i", "j"))
     begin = one[[*"xyz"]].to_numpy()

@@ -12,7 +12,7 @@ from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
 from . import filling, stages
-from .columns import STRAINS
+from .columns import STRAINS, body_pairs
 from .limits import dense_beds, largest_density, overlaps
 from .meshes import FloatArray, sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
@@ -101,13 +101,10 @@ def _share_above(p: ScenePlan, tables: dict[str, pd.DataFrame], limit: float) ->
     contacts = tables["contacts"]
     if contacts.empty:
         return 0.0
-    spheres = tables["particles"].groupby("id")[["radius", "type"]].first()
-    first, second = spheres.reindex(contacts["i"]), spheres.reindex(contacts["j"])
-    R_star = 1.0 / (1.0 / first["radius"].to_numpy() + 1.0 / second["radius"].fillna(np.inf).to_numpy())
-    type_j = np.where(contacts["j"] == 0, contacts["wall"].map(p.wall_types), second["type"]).astype(int)
-    weaker = np.array(p.model.shares())[first["type"].to_numpy(int) - 1, type_j - 1]
-    elastic = np.sqrt(R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
-    strain = weaker * np.maximum(contacts["dent_radius"], elastic) / R_star
+    both = body_pairs(p, contacts, tables["particles"])
+    weaker = np.array(p.model.shares())[both.type_i - 1, both.type_j - 1]
+    elastic = np.sqrt(both.R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
+    strain = weaker * np.maximum(contacts["dent_radius"], elastic) / both.R_star
     return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
 
 

@@ -87,7 +87,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
         "computeContactStrain on": True,
         "compaction on": m.compaction,
     }
-    return tuple(setting for setting, asked in wanted.items() if asked)
+    return tuple(setting for setting, needed in wanted.items() if needed)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:

@@ -106,7 +106,7 @@ def is_pfm(folder: Path) -> bool:
 def check(folder: Path) -> list[str]:
     """Missing parts of a LIGGGHTS tree for a build with our models: a sentence each, with file, line and what to do.
 
-    `folder` is the tree's `src`. Raises CaseError if it is none, or its contact models have another interface.
+    `folder` is the tree's `src`. Raises CaseError for another folder, or contact models with another interface.
     """
     models = folder / "contact_models.h"
     if not models.is_file():

@@ -34,7 +34,7 @@ WITHOUT_COUNTERPART = {  # properties of hooke/hysteresis
     "coefficientMaxElasticStiffness": "the law unloads with the stiffness 2 E* a",
     "coefficientPlasticityDepth": "the law has no depth from which on a contact is elastic",
     "coefficientAdhesionStiffness": "no law has adhesion that plastic work makes; --law thornton_ning --set "
-    "workOfAdhesion=VALUE has that of the surfaces",
+    "workOfAdhesion=VALUE has the adhesion of the surfaces",
     "characteristicVelocity": "the stiffness of a law depends on no speed",
 }
 SETTINGS = (  # of these models, refused or unknown beside a law

@@ -46,7 +46,7 @@ class Property:
 
     @property
     def reason(self) -> str:
-        """Why the property stands in a deck; '' if there is none."""
+        """Reason of the property in a deck; '' if it has none."""
         laws = declarations().values()
         if any(p.property == self.name for law in laws for p in law.parameters if p.name == law.strength):
             return "the law yields at this strength; the softer body's counts"

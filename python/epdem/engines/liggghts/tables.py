@@ -116,7 +116,7 @@ def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Colle
 
 
 def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows of bodies that overlap, as grown as they are, or are attached; `attached` becomes a truth."""
+    """The rows of bodies that overlap, growth included, or are attached; `attached` becomes a bool."""
     if "attached" not in table:
         return table[table["overlap"] + table.get("added_overlap", 0.0) > 0]
     table = table.assign(attached=table["attached"] > 0)
