@@ -72,30 +72,32 @@ void FixHistory::open_energies(int atoms) {
     array_atom[i][elastic_energy] = array_atom[i][loaded_contacts] = array_atom[i][friction_energy] = 0.0;
 }
 
-template <bool wall>
-void FixHistory::add(const kernels::Block& b, int n, const Models& models) {
-  constexpr double share = wall ? 1.0 : 0.5;
-  const bool adheres = models.law->root >= 0, gives_back = models.compaction, rubs = models.adds_friction;
-  const int nlocal = atom->nlocal;
-  double* const rows = array_atom[0];
-  const auto add = [=, &b](int k, double* row) {
-    const double stored = b.stored_energy.a[k], work = b.plastic_work_step.a[k];
-    if (work > 0.0 || gives_back) row[plastic_work] += share * work;  // few contacts yield; growth can give work back
-    row[elastic_energy] += share * stored;
-    row[loaded_contacts] += adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
+void FixHistory::add_wall_energies(const kernels::Block& b, int n, const Models& models) {
+  const double* const loaded = models.law->root >= 0 ? b.contact_radius.a : b.stored_energy.a;
+  for (int k = 0; k < n; ++k) {
+    double* const row = array_atom[b.i[k]];
+    const double work = b.plastic_work_step.a[k];
+    if (work > 0.0 || models.compaction) row[plastic_work] += work;
+    row[elastic_energy] += b.stored_energy.a[k];
+    row[loaded_contacts] += loaded[k] > 0.0;
+  }
+}
+
+void FixHistory::add_works(const kernels::Block& b, int n, const Models& models, bool wall) {
+  const bool adheres = models.law->root >= 0;
+  if (!adheres && !models.adds_friction) return;
+  const double share = wall ? 1.0 : 0.5;
+  const auto add = [&](int k, double* row) {
     if (adheres) row[adhesive_work] += share * b.adhesion_loss.a[k];
-    if (!rubs) return;
+    if (!models.adds_friction) return;
     row[friction_work] += share * b.friction_work.a[k];
     row[friction_energy] += share * b.spring_energy.a[k];
   };
   for (int k = 0; k < n; ++k) {
-    add(k, rows + long(columns) * b.i[k]);
-    if (!wall && b.j[k] < nlocal) add(k, rows + long(columns) * b.j[k]);
+    add(k, array_atom[b.i[k]]);
+    if (!wall && b.j[k] < atom->nlocal) add(k, array_atom[b.j[k]]);
   }
 }
-
-template void FixHistory::add<false>(const kernels::Block&, int, const Models&);
-template void FixHistory::add<true>(const kernels::Block&, int, const Models&);
 
 void FixHistory::close_growth(bool counts) {
   bodies_.resize(2L * rows_ + 2);  // kernels read two numbers behind the last sphere

@@ -3,6 +3,7 @@
 // that contacts give to their atoms.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "epdem/compaction.hpp"
@@ -48,9 +49,13 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Energies are requested: columns plastic work, elastic energy, loaded contacts, work lost by friction, elastic
   /// energy of friction, work lost by adhesion in its jumps.
   enum Column { plastic_work, elastic_energy, loaded_contacts, friction_work, friction_energy, adhesive_work, columns };
-  /// Adds the energies of n contacts to their atoms: half of a pair to each atom of this rank, all of a wall.
-  template <bool wall>
-  void add(const kernels::Block& b, int n, const Models& models);
+  class HalfEnergies;
+  /// What scatter_pairs adds beside the forces: half of plastic work and elastic energy to each atom of this rank.
+  HalfEnergies half_energies(const kernels::Block& b, const Models& models);
+  /// Adds plastic work and elastic energy of n contacts with a wall to their atoms.
+  void add_wall_energies(const kernels::Block& b, int n, const Models& models);
+  /// Adds the energies of friction and the work of adhesion of n contacts: half of a pair to each atom of this rank.
+  void add_works(const kernels::Block& b, int n, const Models& models, bool wall);
   /// Notes the largest w a/R* and w overlap/R* of a block.
   void note_strain(const kernels::Block& b);
   /// Largest w a/R* (0) or w overlap/R* (1) of all contacts since the start.
@@ -115,5 +120,39 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
   std::vector<LAMMPS_NS::tagint> own_;     // by atom: its tag when partners were named, 0: a new atom
 };
+
+/// The sums of atom i stay in registers while its pairs follow each other.
+class FixHistory::HalfEnergies {
+ public:
+  HalfEnergies(const kernels::Block& b, const Models& models, double* rows)
+      : work_(b.plastic_work_step.a),
+        energy_(b.stored_energy.a),
+        loaded_(models.law->root >= 0 ? b.contact_radius.a : energy_),
+        gives_back_(models.compaction),
+        rows_(rows) {}
+
+  void begin(long i) { std::copy_n(rows_ + columns * i, halves, sum_); }
+  void add(int k, long j, bool owned) {
+    double* const row = owned ? rows_ + columns * j : ghost_;
+    const double work = work_[k] > 0.0 || gives_back_ ? 0.5 * work_[k] : 0.0;  // growth can give work back
+    const double of_contact[halves] = {work, 0.5 * energy_[k], double(loaded_[k] > 0.0)};
+    for (int c = 0; c < halves; ++c) {
+      sum_[c] += of_contact[c];
+      row[c] += of_contact[c];
+    }
+  }
+  void end(long i) { std::copy_n(sum_, halves, rows_ + columns * i); }
+
+ private:
+  static constexpr int halves = 3;  // the first columns
+  const double *const work_, *const energy_, *const loaded_;
+  const bool gives_back_;
+  double* const rows_;
+  double sum_[halves] = {}, ghost_[halves] = {};
+};
+
+inline FixHistory::HalfEnergies FixHistory::half_energies(const kernels::Block& b, const Models& models) {
+  return {b, models, array_atom[0]};
+}
 
 }  // namespace epdem::lammps

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// fix ID group-ID nve/sphere/ep: LAMMPS's nve/sphere, whose bits it has, as lanes.
+// fix ID group-ID nve/sphere/ep and gravity/ep: LAMMPS's nve/sphere and gravity, whose bits they have, over rows of
+// spheres.
 #pragma once
 
 #include "atom.h"
@@ -8,9 +9,24 @@
 #include "force.h"
 #include "kernels/spheres.hpp"
 #include "update.h"
+#include "utils.h"
 #include "words.hpp"
 
 namespace epdem::lammps {
+
+/// Calls `of_row(first, count)` for each row of spheres of a group side by side in memory.
+template <class OfRow>
+void each_row(const LAMMPS_NS::Atom& atom, int igroup, int groupbit, OfRow of_row) {
+  const int n = igroup == atom.firstgroup ? atom.nfirst : atom.nlocal;
+  const auto is_ours = [&](int i) { return (atom.mask[i] & groupbit) != 0; };
+  constexpr int all = 0;  // number of the group
+  if (igroup == all && n > 0) return of_row(0, n);
+  for (int i = 0; i < n; ++i) {
+    const int first = i;
+    while (i < n && is_ours(i)) ++i;
+    if (i > first) of_row(first, i - first);
+  }
+}
 
 class FixMotion final : public LAMMPS_NS::Fix {
  public:
@@ -36,15 +52,10 @@ class FixMotion final : public LAMMPS_NS::Fix {
   void final_integrate() override { step(false); }
 
  private:
-  /// Half a step of the velocities, and with `moves` a step of the positions, of each row of spheres of the group.
+  /// Half a step of the velocities, and with `moves` a step of the positions.
   void step(bool moves) {
-    const int n = igroup == atom->firstgroup ? atom->nfirst : atom->nlocal;
-    const auto is_ours = [this](int i) { return (atom->mask[i] & groupbit) != 0; };
-    for (int i = 0; i < n; ++i) {
-      const int first = i;
-      while (i < n && is_ours(i)) ++i;
-      if (i == first) continue;
-      kernels::HalfStep s{i - first,
+    each_row(*atom, igroup, groupbit, [&](int first, int count) {
+      kernels::HalfStep s{count,
                           atom->x[first],
                           atom->v[first],
                           atom->omega[first],
@@ -58,12 +69,39 @@ class FixMotion final : public LAMMPS_NS::Fix {
                           1.0};
       if (!moves) s.x = nullptr;
       spheres_->half_step(s);
-    }
+    });
   }
 
   static constexpr double inertia = 0.4;  // of a sphere, over m R^2
   const kernels::SphereKernels* spheres_ = nullptr;
   double dt_ = 0.0, half_ = 0.0;
+};
+
+/// fix ID group-ID gravity/ep gx gy gz: three accelerations.
+class FixGravity final : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char* style_name = "gravity/ep";
+
+  FixGravity(LAMMPS_NS::LAMMPS* lmp, int count, char** word) : Fix(lmp, count, word) {
+    if (count != 6) error->all(FLERR, "fix gravity/ep: the words are ID group gravity/ep gx gy gz");
+    if (!atom->rmass_flag) error->all(FLERR, "fix gravity/ep needs atom_style sphere");
+    for (int axis = 0; axis < 3; ++axis) g_[axis] = LAMMPS_NS::utils::numeric(FLERR, word[3 + axis], false, lmp);
+    dynamic_group_allow = 1;
+  }
+
+  int setmask() override { return LAMMPS_NS::FixConst::POST_FORCE; }
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int) override {
+    each_row(*atom, igroup, groupbit, [this](int first, int count) {
+      const double* const __restrict mass = atom->rmass + first;
+      double* const __restrict f = atom->f[first];
+      for (int i = 0; i < count; ++i)
+        for (int axis = 0; axis < 3; ++axis) f[3 * i + axis] += mass[i] * g_[axis];
+    });
+  }
+
+ private:
+  double g_[3];
 };
 
 }  // namespace epdem::lammps

@@ -157,7 +157,7 @@ void FixWall::post_force(int) {
   pass_.v = rows[0];
   pass_.omega = rows[1];
   std::fill_n(sum_, sums, 0.0);
-  local_.clear();
+  size_local_rows = 0;
 
   kernels::Block& b = *block_;
   std::vector<Contact> found;
@@ -194,8 +194,7 @@ void FixWall::post_force(int) {
   }
   finish(n);
   summed_ = -1;
-  size_local_rows = static_cast<int>(local_.size()) / local_columns;
-  local_row_.resize(size_local_rows);
+  local_row_.resize(std::max<size_t>(local_row_.size(), size_local_rows));
   for (int k = 0; k < size_local_rows; ++k) local_row_[k] = local_.data() + local_columns * k;
   array_local = local_row_.data();
   if (counts) return;
@@ -264,7 +263,10 @@ void FixWall::finish(int n) {
       sum_[6] += b.force[axis].a[k] * b.wall_v[axis].a[k];
     }
   }
-  if (pass_.work) pair_->history()->add<true>(b, n, words_.models);
+  if (pass_.work) {
+    pair_->history()->add_wall_energies(b, n, words_.models);
+    pair_->history()->add_works(b, n, words_.models, true);
+  }
   if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);
   if (pair_->energies()) note(n);
@@ -274,8 +276,9 @@ void FixWall::finish(int n) {
 void FixWall::note(int n) {
   const kernels::Block& b = *block_;
   const int most = words_.models.law->most, root = layout_.root;
-  const size_t first = local_.size();
-  local_.resize(first + local_columns * n);
+  const size_t first = size_t(local_columns) * size_local_rows, last = first + size_t(local_columns) * n;
+  if (local_.size() < last) local_.resize(2 * last);
+  size_local_rows += n;
   double* row = local_.data() + first;
   for (int k = 0; k < n; ++k, row += local_columns) {
     const double overlap = b.overlap.a[k], distance = atom->radius[b.i[k]] - overlap, *const history = b.history[k];
@@ -485,8 +488,9 @@ bool FixWallRegion::is_near(int i, double distance) {
 
 void FixWallRegion::find(int i, std::vector<Contact>& found) {
   double* const x = atom->x[i];
-  if (!region_->match(x[0], x[1], x[2])) return;
   const int count = region_->surface(x[0], x[1], x[2], reach_of(i));
+  // LAMMPS turns the sphere into the frame of a region once more for each question; open regions hold every point
+  if (count == 0 || (!region_->openflag && !region_->match(x[0], x[1], x[2]))) return;
   for (int k = 0; k < count; ++k) {
     const Region::Contact& at = region_->contact[k];
     Contact c{at.iwall, at.r, {at.delx, at.dely, at.delz}, {}};

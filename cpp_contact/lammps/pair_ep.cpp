@@ -287,8 +287,15 @@ void PairEp::finish(int n) {
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
   if (models_.compaction) history_->note_dents(b, n, false);
-  kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, kernels::NothingBeside{});
-  if (pass_.work) history_->add<false>(b, n, models_);
+  const auto scatter = [&](auto beside) {
+    kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
+  };
+  if (pass_.work) {
+    scatter(history_->half_energies(b, models_));
+    history_->add_works(b, n, models_, false);
+  } else {
+    scatter(kernels::NothingBeside{});
+  }
   if (vflag_either) tally(n);
 }
 

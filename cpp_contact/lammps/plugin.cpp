@@ -40,15 +40,16 @@ void* create_fix(void* lmp, int count, char** word) {
 
 extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, void* handle, void* add) {
   auto* const lmp = static_cast<LAMMPS_NS::LAMMPS*>(pointer);
+  const std::string build =
+      "; build it for this one: make lammps LAMMPS_DIR=/its/build/folder in a checkout of epdem, else epdem export "
+      "lammps --out DIR";
   if (lmp->num_ver != EPDEM_LAMMPS_VERSION)
     lmp->error->all(FLERR, "epdemplugin.so is built for LAMMPS " + std::to_string(EPDEM_LAMMPS_VERSION) +
-                               " and this is LAMMPS " + std::to_string(lmp->num_ver) +
-                               "; build it for this one: make lammps LAMMPS_DIR=/its/build/folder");
+                               " and this is LAMMPS " + std::to_string(lmp->num_ver) + build);
   if (lammps_extract_setting && (lammps_extract_setting(pointer, "tagint") != int(sizeof(LAMMPS_NS::tagint)) ||
                                  lammps_extract_setting(pointer, "bigint") != int(sizeof(LAMMPS_NS::bigint))))
     lmp->error->all(FLERR,
-                    "epdemplugin.so is built for other sizes of integers than this LAMMPS has (LAMMPS_SIZES); "
-                    "build it for this one: make lammps LAMMPS_DIR=/its/build/folder");
+                    "epdemplugin.so is built for other sizes of integers than this LAMMPS has (LAMMPS_SIZES)" + build);
   const auto style = [&](const char* kind, const char* name, const char* info, void* create) {
     Style s{lmp->version, kind, name, info, "the epdem developers", create, handle};
     reinterpret_cast<Register>(add)(&s, pointer);
@@ -59,6 +60,7 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
   style("fix", FixHistory::style_name, "history of elastic-plastic contacts",
         reinterpret_cast<void*>(&create_fix<FixHistory>));
   style("fix", FixMotion::style_name, "motion of spheres", reinterpret_cast<void*>(&create_fix<FixMotion>));
+  style("fix", FixGravity::style_name, "gravity", reinterpret_cast<void*>(&create_fix<FixGravity>));
   style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes",
         reinterpret_cast<void*>(&create_fix<FixWallPlanes>));
   style("fix", FixWallRegion::style_name, "elastic-plastic contacts with a region",

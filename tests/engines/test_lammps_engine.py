@@ -4,6 +4,7 @@
 import os
 import runpy
 import shutil
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -256,6 +257,22 @@ def test_exported_sources_compile_with_the_headers_of_another_lammps(own_lammps,
         ["make", "plugin.o"], cwd=build / "cpp_contact/lammps", capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+@needs_lammps
+def test_a_plugin_for_another_lammps_is_refused_with_the_commands_that_build_it(tmp_path):
+    """The number of the version in the plugin is another one."""
+    built = lammps.paths.native("lammps/epdemplugin.so").read_bytes()
+    ours, other = struct.pack("<i", 20250722), struct.pack("<i", 20240829)
+    assert ours in built
+    (tmp_path / "epdemplugin.so").write_bytes(built.replace(ours, other))
+    (tmp_path / "in.deck").write_text("units si\n")
+    env = lammps.environment() | {"LAMMPS_PLUGIN_PATH": str(tmp_path)}
+    done = subprocess.run(
+        [lammps.program(), "-in", "in.deck", "-log", "none"], cwd=tmp_path, env=env, capture_output=True, text=True
+    )
+    assert done.returncode and "for LAMMPS 20240829 and this is LAMMPS 20250722; build it" in done.stdout, done.stdout
+    assert "make lammps LAMMPS_DIR=" in done.stdout and "epdem export lammps --out DIR" in done.stdout
 
 
 def test_the_version_follows_program_and_plugin(tmp_path, monkeypatch):

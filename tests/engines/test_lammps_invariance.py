@@ -217,12 +217,14 @@ run 1500
 
 
 @pytest.mark.parametrize("group", ["all", "some", "first"])
-def test_the_motion_has_the_bits_of_nve_sphere(group, tmp_path):
+def test_motion_and_gravity_have_the_bits_of_lammps_own(group, tmp_path):
     """Of all spheres, of every third one, and of those of atom_modify first."""
     groups = {"all": "", "some": "group some id 1:2000:3\n", "first": "group first id 1:700\natom_modify first first\n"}
-    deck = bed(more=groups[group]).replace("fix motion all", f"fix motion {group}")
-    _, theirs = run(deck + "run 300\n" + DUMP, tmp_path / "theirs")
-    _, ours = run(deck.replace("nve/sphere", "nve/sphere/ep") + "run 300\n" + DUMP, tmp_path / "ours")
+    deck = bed(more=groups[group]).replace("fix motion all", f"<GRAVITY>fix motion {group}")
+    own = f"fix fall {group} gravity 9.81 vector 0 0 -1\nfix slip {group} gravity 3 vector 1 0 0\n"
+    _, theirs = run(deck.replace("<GRAVITY>", own) + "run 300\n" + DUMP, tmp_path / "theirs")
+    deck = deck.replace("<GRAVITY>", f"fix fall {group} gravity/ep 3 0 -9.81\n").replace("nve/sphere", "nve/sphere/ep")
+    _, ours = run(deck + "run 300\n" + DUMP, tmp_path / "ours")
     assert (ours == theirs).all() and np.abs(ours[:, 7:]).max() > 1.0
 
 
@@ -231,6 +233,8 @@ def test_the_motion_has_the_bits_of_nve_sphere(group, tmp_path):
     [
         ("sphere", "nve/sphere/ep disc", "fix nve/sphere/ep: disc is not known; it has no words"),
         ("atomic", "nve/sphere/ep", "fix nve/sphere/ep needs atom_style sphere"),
+        ("sphere", "gravity/ep 9.81", "fix gravity/ep: the words are ID group gravity/ep gx gy gz"),
+        ("atomic", "gravity/ep 0 0 -9.81", "fix gravity/ep needs atom_style sphere"),
     ],
 )
 def test_the_motion_refuses_words_and_points(style, words, sentence, tmp_path):
