@@ -147,15 +147,8 @@ void FixWall::post_force(int) {
   pass_.work = counts && pair_->energies();
   pass_.strain = pair_->strain();
   pass_.sums = pair_->history()->bodies();
-  const double* rows[] = {atom->v[0], atom->omega[0]};
-  if (atom->nlocal >= atom->nmax)
-    for (int k = 0; k < 2; ++k) {
-      copies_[k].assign(rows[k], rows[k] + 3L * atom->nlocal);
-      copies_[k].push_back(0.0);
-      rows[k] = copies_[k].data();
-    }
-  pass_.v = rows[0];
-  pass_.omega = rows[1];
+  pass_.v = readable_rows(atom->v, atom->nlocal, atom->nmax, copies_[0]);
+  pass_.omega = readable_rows(atom->omega, atom->nlocal, atom->nmax, copies_[1]);
   std::fill_n(sum_, sums, 0.0);
   size_local_rows = 0;
 

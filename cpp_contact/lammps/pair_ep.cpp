@@ -200,16 +200,9 @@ double PairEp::init_one(int i, int j) {
 
 void PairEp::set_pass(bool counts) {
   const int atoms = atom->nlocal + atom->nghost;
-  const double* rows[] = {atom->x[0], atom->v[0], atom->omega[0]};
-  if (atoms >= atom->nmax)
-    for (int k = 0; k < 3; ++k) {
-      copies_[k].assign(rows[k], rows[k] + 3L * atoms);
-      copies_[k].push_back(0.0);
-      rows[k] = copies_[k].data();
-    }
-  pass_.x = rows[0];
-  pass_.v = rows[1];
-  pass_.omega = rows[2];
+  pass_.x = readable_rows(atom->x, atoms, atom->nmax, copies_[0]);
+  pass_.v = readable_rows(atom->v, atoms, atom->nmax, copies_[1]);
+  pass_.omega = readable_rows(atom->omega, atoms, atom->nmax, copies_[2]);
   pass_.dt = counts ? update->dt : no_time;
   pass_.repeats = !counts;
   pass_.rolling = models_.rolling;

@@ -335,6 +335,13 @@ kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& m
                 models.law->name + "; take tangential history");
 }
 
+const double* readable_rows(const double* const* rows, int atoms, int capacity, std::vector<double>& copy) {
+  if (atoms < capacity) return rows[0];
+  copy.assign(rows[0], rows[0] + 3L * atoms);
+  copy.push_back(0.0);
+  return copy.data();
+}
+
 Layout layout_of(const Models& models, bool wall) {
   int friction = 0, even = 0;
   Frictions::each([&](auto model, int at) {

@@ -96,6 +96,9 @@ const kernels::Kernels& kernels_of(LAMMPS_NS::LAMMPS* lmp);
 kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall,
                           bool complete);
 
+/// Rows of three numbers of atoms, of which kernels read one number behind the last: a copy where memory ends there.
+const double* readable_rows(const double* const* rows, int atoms, int capacity, std::vector<double>& copy);
+
 /// Values in the history of a contact.
 struct Layout {
   int values = 0;                            // numbers of a contact
