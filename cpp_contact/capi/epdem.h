@@ -44,7 +44,7 @@ typedef struct {
   int64_t steps;        /* taken */
 } epdem_impact_output;
 
-/* Who is it. */
+/* Identity of the library. */
 int epdem_abi(void);
 const char* epdem_version(void);
 const char* epdem_message(int status);
@@ -96,7 +96,7 @@ int epdem_oblique(int law, double E_star, const double* parameters, double G_sta
 int epdem_motion(int law, double E_star, const double* parameters, double R_star, double G_star, double mu, int nodes,
                  size_t n, const double* motion, double* out);
 
-/* The same impacts computed in long double and rounded once, at the end: what is left to double is round-off. */
+/* The same impacts computed in long double and rounded once, at the end: the difference is round-off. */
 int epdem_impacts_long_double(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
                               epdem_impact_output* out);
 

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kernels/block.hpp"
 
+#include <cstdlib>
 #include <cstring>
+
+#include "kernels/gather.hpp"
 
 namespace epdem::kernels {
 
+namespace {
+
+/// An empty name: the widest set.
 const Kernels* kernels_of(const char* name) {
   const auto wanted = [name](const char* set) { return !*name || std::strcmp(name, set) == 0; };
 #if defined __x86_64__
@@ -15,6 +21,17 @@ const Kernels* kernels_of(const char* name) {
   if (__builtin_cpu_supports("avx2") && wanted("avx2")) return &kernels_avx2;
 #endif
   return wanted("sse2") ? &kernels_sse2 : nullptr;
+}
+
+}  // namespace
+
+const Kernels* chosen_kernels(std::string& refusal) {
+  const char* const set = std::getenv("EPDEM_SIMD");
+  const Kernels* const found = kernels_of(set ? set : "");
+  if (!found)
+    refusal = std::string("EPDEM_SIMD = ") + set +
+              ": this processor has no such instructions; leave it unset, or take sse2, avx2 or avx512";
+  return found;
 }
 
 void pad(Block& b, int n) {

@@ -37,7 +37,7 @@ struct Block {
   double unused_history[64];                               // of the lanes behind the last contact
 };
 
-/// What all contacts of a pass have in common.
+/// Settings and arrays of a pass, the same for all contacts.
 struct Pass : ContactSettings {
   const double *x, *v, *omega;  // rows of three; one number behind the last row can be read
   const double* sums;           // BodySums of all spheres side by side, with compaction
@@ -48,7 +48,7 @@ struct Pass : ContactSettings {
   bool strain;                  // the largest w a/R* and w overlap/R* are requested
 };
 
-/// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads (`pad`).
+/// Computes n contacts; the lanes behind them have valid indices and an unused history (`pad`).
 using Kernel = void (*)(Block&, int n, const Pass&);
 
 /// The kernels of one instruction set: law and friction by their places in their lists, whether the contacts are at
@@ -63,10 +63,6 @@ struct Kernels {
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
-
-/// The kernels of the instruction set `name` (sse2, avx2 or avx512); an empty name means the widest set of this
-/// processor. nullptr: the processor lacks the set, or there is no set of this name.
-const Kernels* kernels_of(const char* name);
 
 /// Gives the lanes behind the last of n contacts something harmless.
 void pad(Block& block, int n);

@@ -3,9 +3,23 @@
 // no inline function that others share.
 #pragma once
 
+#include <algorithm>
+#include <string>
+
+#include "epdem/exists.hpp"
 #include "kernels/block.hpp"
 
 namespace epdem::kernels {
+
+/// The kernels of the instruction set that EPDEM_SIMD names (sse2, avx2 or avx512), else of the widest set of this
+/// processor. nullptr: the processor lacks the set, or there is no set of this name, as `refusal` says.
+const Kernels* chosen_kernels(std::string& refusal);
+
+/// The largest strains in a block, w a/R* (0) and w overlap/R* (1).
+inline double largest_strain(const Block& b, int which) {
+  const double* const lanes = which == 0 ? b.radius_ratio : b.overlap_ratio;
+  return *std::max_element(lanes, lanes + most_lanes);
+}
 
 /// Numbers of all spheres of a host, force and torque as rows of three.
 struct Spheres {
@@ -26,6 +40,13 @@ inline bool several_types(const int* type, int n) {
   int others = 0;
   for (int i = 0; i < n; ++i) others |= type[i] ^ type[0];
   return others != 0;
+}
+
+/// The gap between two spheres.
+inline Gap gap_of(const Pass& pass, const double* radius, long i, long j) {
+  const double* const x = pass.x;
+  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+  return {dx * dx + dy * dy + dz * dz, radius[i], radius[j], sums_of(pass.sums, i), sums_of(pass.sums, j)};
 }
 
 /// Fills a block whose n > 0 pairs (i, j) are known and prefetches what lies apart in memory. history(i, k) fetches the

@@ -122,9 +122,7 @@ EPDEM_INLINE Mask parted(double now, Lanes last_step) { return now - last_step >
 /// The values of a history one by one: a copy as a whole would go through memory.
 template <int count, class From, class To>
 EPDEM_INLINE void copy(const From* from, To* to) {
-  const Lanes* const source = reinterpret_cast<const Lanes*>(from);
-  Lanes* const target = reinterpret_cast<Lanes*>(to);
-  for (int k = 0; k < count; ++k) target[k] = source[k];
+  for (int k = 0; k < count; ++k) put_number(*to, k, number_at<Lanes>(*from, k));
 }
 
 /// History of rolling friction behind `first` values of other models, read and written only where a model needs it.
@@ -174,8 +172,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
   static_assert(all_constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
   static_assert(sizeof(BodyShares<Lanes>) == 4 * sizeof(Lanes) && bodies_at + 4 == all_constants);
   Pair pair{};
-  Lanes* const numbers = reinterpret_cast<Lanes*>(&pair);  // a Pair is made of numbers only
-  for (int c = 0; c < all_constants; ++c) numbers[c] = constant<Lanes>(b.material[0][c]);
+  for (int c = 0; c < all_constants; ++c) put_number(pair, c, constant<Lanes>(b.material[0][c]));
   // The history of the next block lies behind the history of this block: fetch a long history during the computation.
   const auto ahead = reinterpret_cast<std::uintptr_t>(b.history[n - 1]);
   const auto behind = reinterpret_cast<std::uintptr_t>(b.history[0]);
@@ -189,7 +186,8 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
       const auto read_four = [&](int c) __attribute__((always_inline)) {
         const Columns four =
             columns([&](int l) __attribute__((always_inline)) { return load<Row>(b.material[k + l] + c); });
-        numbers[c] = four.a, numbers[c + 1] = four.b, numbers[c + 2] = four.c, numbers[c + 3] = four.d;
+        put_number(pair, c, four.a), put_number(pair, c + 1, four.b), put_number(pair, c + 2, four.c);
+        put_number(pair, c + 3, four.d);
       };
       for (int c = 0; c < bodies_at; c += 4) read_four(c);
       if (grows || is_confined<Law> || pass.strain) read_four(bodies_at);

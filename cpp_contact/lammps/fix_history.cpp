@@ -9,6 +9,7 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
+#include "kernels/gather.hpp"
 #include "memory.h"
 #include "neigh_list.h"
 
@@ -73,7 +74,7 @@ void FixHistory::open_energies(int atoms) {
 }
 
 void FixHistory::add_wall_energies(const kernels::Block& b, int n, const Models& models) {
-  const double* const loaded = models.law->root >= 0 ? b.contact_radius.a : b.stored_energy.a;
+  const double* const loaded = models.law->gap.root >= 0 ? b.contact_radius.a : b.stored_energy.a;
   for (int k = 0; k < n; ++k) {
     double* const row = array_atom[b.i[k]];
     const double work = b.plastic_work_step.a[k];
@@ -84,7 +85,7 @@ void FixHistory::add_wall_energies(const kernels::Block& b, int n, const Models&
 }
 
 void FixHistory::add_works(const kernels::Block& b, int n, const Models& models, bool wall) {
-  const bool adheres = models.law->root >= 0;
+  const bool adheres = models.law->gap.root >= 0;
   if (!adheres && !models.adds_friction) return;
   const double share = wall ? 1.0 : 0.5;
   const auto add = [&](int k, double* row) {
@@ -138,8 +139,7 @@ void FixHistory::unpack_forward_comm(int n, int first, double* buffer) {
 }
 
 void FixHistory::note_strain(const kernels::Block& b) {
-  strain_[0] = std::max(strain_[0], *std::max_element(b.radius_ratio, b.radius_ratio + kernels::most_lanes));
-  strain_[1] = std::max(strain_[1], *std::max_element(b.overlap_ratio, b.overlap_ratio + kernels::most_lanes));
+  for (const int which : {0, 1}) strain_[which] = std::max(strain_[which], kernels::largest_strain(b, which));
 }
 
 double FixHistory::compute_vector(int which) {

@@ -127,7 +127,7 @@ class FixHistory::HalfEnergies {
   HalfEnergies(const kernels::Block& b, const Models& models, double* rows)
       : work_(b.plastic_work_step.a),
         energy_(b.stored_energy.a),
-        loaded_(models.law->root >= 0 ? b.contact_radius.a : energy_),
+        loaded_(models.law->gap.root >= 0 ? b.contact_radius.a : energy_),
         gives_back_(models.compaction),
         rows_(rows) {}
 

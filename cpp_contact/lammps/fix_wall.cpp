@@ -98,7 +98,7 @@ void FixWall::init() {
   pass_.cohesion = words_.models.cohesion;
   if (words_.coefficients.damped()) refuse_rigid_bodies(lmp, place_);
   if (words_.models.compaction) reach_factor_ = 1.0 + growth_reach;
-  if (layout_.root < 0) return;
+  if (layout_.gap.root < 0) return;
   reach_ = neighbor->skin;
   for (const int type : types_of_group())
     checked_gap(lmp, place_, *words_.models.law, constants_.data() + most_constants * type,
@@ -146,7 +146,7 @@ void FixWall::post_force(int) {
   pass_.repeats = !counts;
   pass_.work = counts && pair_->energies();
   pass_.strain = pair_->strain();
-  pass_.sums = pair_->history()->bodies();
+  pass_.sums = words_.models.compaction ? pair_->history()->bodies() : nullptr;
   pass_.v = readable_rows(atom->v, atom->nlocal, atom->nmax, copies_[0]);
   pass_.omega = readable_rows(atom->omega, atom->nlocal, atom->nmax, copies_[1]);
   std::fill_n(sum_, sums, 0.0);
@@ -159,7 +159,7 @@ void FixWall::post_force(int) {
     if (!(atom->mask[i] & groupbit)) continue;
     found.clear();
     find(i, found);
-    if (layout_.root >= 0 || layout_.growth >= 0) drop_parted(i, found);
+    if (layout_.gap.any()) drop_parted(i, found);
     if (static_cast<int>(found.size()) > most_)
       error->one(FLERR, "{}: atom {} has more than {} contacts with the wall", place_, atom->tag[i], most_);
     if (!has_records_of(i, found)) keep_records(i, found);
@@ -205,11 +205,8 @@ bool FixWall::stands(int i, const Contact& contact) {
   const double* history = nullptr;
   for (int k = 0; k < count_[i]; ++k)
     if (record(i, k)[0] == contact.part) history = record(i, k) + 1;
-  if (layout_.growth < 0) return history && is_attached(history[layout_.root], history[layout_.jump], pass_.repeats);
-  if (pass_.repeats && !history) return false;
-  const double radius = atom->radius[i];
-  const auto c = growing_at_wall(radius, sums_of(pass_.sums, i), history ? history + layout_.growth : nullptr);
-  return closes_gap(c, contact.distance * contact.distance, pass_.repeats);
+  const Gap gap{contact.distance * contact.distance, atom->radius[i], 0.0, sums_of(pass_.sums, i), {}};
+  return exists(layout_.gap, history, gap, pass_.repeats);
 }
 
 /// Whether the records of a sphere have the order of its contacts.
@@ -268,7 +265,7 @@ void FixWall::finish(int n) {
 /// Writes the rows of a `dump local`.
 void FixWall::note(int n) {
   const kernels::Block& b = *block_;
-  const int most = words_.models.law->most, root = layout_.root;
+  const int most = words_.models.law->most, root = layout_.gap.root, growth = layout_.gap.growth;
   const size_t first = size_t(local_columns) * size_local_rows, last = first + size_t(local_columns) * n;
   if (local_.size() < last) local_.resize(2 * last);
   size_local_rows += n;
@@ -280,8 +277,8 @@ void FixWall::note(int n) {
     row[2] = overlap;
     row[3] = most < 0 ? overlap : std::max(overlap, history[most]);
     row[4] = root < 0 || history[root] > 0.0;
-    row[5] = layout_.growth < 0 ? 0.0 : added_overlap_of(history + layout_.growth);
-    row[6] = layout_.growth < 0 ? 0.0 : screening_of(history + layout_.growth);
+    row[5] = growth < 0 ? 0.0 : added_overlap_of(history + growth);
+    row[6] = growth < 0 ? 0.0 : screening_of(history + growth);
     for (int axis = 0; axis < 3; ++axis) {
       row[7 + axis] = b.force[axis].a[k];
       row[10 + axis] = distance > 0.0 ? b.from_wall[axis].a[k] / distance : 0.0;

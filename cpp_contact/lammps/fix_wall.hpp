@@ -98,7 +98,7 @@ class FixWall : public LAMMPS_NS::Fix {
   std::vector<double> copies_[2], scratch_;
   static constexpr int sums = 7, local_columns = 13;
   double sum_[sums] = {}, total_[sums] = {};
-  std::vector<double> local_;  // of each contact: id, part, overlap, largest overlap, attached, added overlap
+  std::vector<double> local_;  // of each contact: rows of `note`
   std::vector<double*> local_row_;
   LAMMPS_NS::bigint summed_ = -1;
 };

@@ -208,7 +208,7 @@ void PairEp::set_pass(bool counts) {
   pass_.rolling = models_.rolling;
   pass_.cohesion = models_.cohesion;
   pass_.now = history_->now();
-  pass_.sums = history_->bodies();
+  pass_.sums = models_.compaction ? history_->bodies() : nullptr;
   pass_.freeze = frozen_ != 0;
   pass_.strain = strain_;
 }
@@ -237,9 +237,8 @@ void PairEp::gather() {
   const kernels::PairList& pairs = history_->pairs();
   const auto compute_block = [this](int n) { finish(n); };
   const auto search = [&](double factor) { return pairs.search(pass_.x, atom->radius, factor); };
-  if (layout_.root < 0 && layout_.growth < 0)
-    return kernels::each_overlap(*spheres_, search(1.0), *block_, place_, compute_block);
-  const double factor = layout_.growth < 0 ? HUGE_VAL : history_->factor();
+  if (!layout_.gap.any()) return kernels::each_overlap(*spheres_, search(1.0), *block_, place_, compute_block);
+  const double factor = layout_.gap.growth < 0 ? HUGE_VAL : history_->factor();
   const auto across_gap = [this](int i, int j, int place) { return stands(i, j, history_->at(place)); };
   kernels::each_contact(*spheres_, search(factor), *block_, place_, across_gap, compute_block);
 }
@@ -248,13 +247,7 @@ void PairEp::gather() {
 /// once more has the attachment and the growth that it had.
 bool PairEp::stands(int i, int j, const double* history) const {
   const bool known = history && pass_.now - history[layout_.last_step] <= 1.0;
-  if (layout_.growth < 0) return known && is_attached(history[layout_.root], history[layout_.jump], pass_.repeats);
-  if (pass_.repeats && !known) return false;
-  const double *const x = pass_.x, ri = atom->radius[i], rj = atom->radius[j];
-  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
-  const auto c =
-      growing_pair(ri, rj, sums_of(pass_.sums, i), sums_of(pass_.sums, j), known ? history + layout_.growth : nullptr);
-  return closes_gap(c, dx * dx + dy * dy + dz * dz, pass_.repeats);
+  return exists(layout_.gap, known ? history : nullptr, kernels::gap_of(pass_, atom->radius, i, j), pass_.repeats);
 }
 
 /// Fills the block with n > 0 pairs; history_at(k) is the history of pair k.
@@ -328,8 +321,8 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
   const bool recent = known && history_->now() - known[layout_.last_step] <= 1.0;
   set_pass(false);
-  const bool attached =
-      recent && ((layout_.root >= 0 && known[layout_.root] > 0.0) || (layout_.growth >= 0 && stands(i, j, known)));
+  const bool attached = recent && ((layout_.gap.root >= 0 && known[layout_.gap.root] > 0.0) ||
+                                   (layout_.gap.growth >= 0 && stands(i, j, known)));
   if (overlap <= 0.0 && !attached) return 0.0;
   std::vector<double> history(std::max(1, layout_.values), 0.0);
   if (known) std::copy_n(known, layout_.values, history.data());
@@ -346,10 +339,10 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   single_[0] = overlap;
   single_[1] = models_.law->most < 0 ? overlap : std::max(overlap, history[models_.law->most]);
   single_[2] = b.contact_radius.a[0];
-  single_[3] = models_.law->root < 0 || history[layout_.root] > 0.0;
-  if (layout_.growth >= 0) {
-    single_[4] = added_overlap_of(history.data() + layout_.growth);
-    single_[5] = screening_of(history.data() + layout_.growth);
+  single_[3] = layout_.gap.root < 0 || history[layout_.gap.root] > 0.0;
+  if (layout_.gap.growth >= 0) {
+    single_[4] = added_overlap_of(history.data() + layout_.gap.growth);
+    single_[5] = screening_of(history.data() + layout_.gap.growth);
   }
   for (int axis = 0; axis < 3; ++axis) single_[6 + axis] = b.force[axis].a[0];
   return b.stored_energy.a[0];

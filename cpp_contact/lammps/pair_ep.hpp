@@ -25,12 +25,12 @@ class PairEp : public LAMMPS_NS::Pair {
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
   /// Elastic energy of a contact, normal force over distance; svector: overlap, largest overlap, contact radius,
-  /// whether the bodies touch or are attached, overlap that growth adds.
+  /// whether the bodies touch or are attached, overlap that growth adds, screening, force on i.
   double single(int i, int j, int itype, int jtype, double rsq, double, double, double& fforce) override;
   void write_restart(FILE* file) override;
   void read_restart(FILE* file) override;
 
-  /// What a wall reads: models of all contacts, the material of a type, energies.
+  /// For walls: models of all contacts, the material of a type, energies.
   const Models& models() const { return models_; }
   bool has_material(int type) const { return !types_.at(type * width_ + type).text.empty(); }
   const Words& words_of(int type, const std::string& place) const;

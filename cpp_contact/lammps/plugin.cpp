@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What LAMMPS calls when it loads the library: `plugin load epdemplugin.so`, or by itself from LAMMPS_PLUGIN_PATH.
+// Entry of the library, which LAMMPS calls when it loads it: `plugin load epdemplugin.so`, or by itself from
+// LAMMPS_PLUGIN_PATH.
 #include <new>
 #include <string>
 

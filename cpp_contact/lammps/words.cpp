@@ -13,6 +13,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "kernels/gather.hpp"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -45,8 +46,7 @@ Law law_of() {
           Class::condition,
           detail::place<Class>(),
           history_size<Class>,
-          place_of<Class>("root"),
-          place_of<Class>("jump"),
+          gap_places<Class>(),
           place_of<Class>("delta_max"),
           [](double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants) {
             ContactConstants<Class> pair;
@@ -161,7 +161,7 @@ void read_options(WordReader& reader, Words& words) {
     if (option == 0) {
       words.models.friction = reader.next_of("tangential", names<Frictions>());
       Frictions::each([&](auto model, int place) {
-        if (place == words.models.friction) words.models.adds_friction = decltype(model)::books_work;
+        if (place == words.models.friction) words.models.adds_friction = decltype(model)::adds_work;
       });
       if (words.models.friction) words.coefficients.friction = reader.next_number("friction mu", not_negative);
     } else if (option == 1) {
@@ -311,16 +311,14 @@ double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const 
 }
 
 const kernels::Kernels& kernels_of(LAMMPS* lmp) {
-  const char* const wanted = std::getenv("EPDEM_SIMD");
-  const kernels::Kernels* const set = kernels::kernels_of(wanted ? wanted : "");
-  if (!set)
-    fail(lmp, "EPDEM_SIMD = " + std::string(wanted) +
-                  ": this processor has no such instructions; leave it unset, or take sse2, avx2 or avx512");
+  std::string refusal;
+  const kernels::Kernels* const set = kernels::chosen_kernels(refusal);
+  if (!set) fail(lmp, refusal);
   return *set;
 }
 
 kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& models, bool wall, bool complete) {
-  if (models.law->root >= 0 && models.cohesion)
+  if (models.law->gap.root >= 0 && models.cohesion)
     fail(lmp, place + ": cohesion " + names<Cohesions>()[models.cohesion] + " beside " + models.law->name +
                   ", which attracts by itself; remove one");
   const kernels::Kernels& set = kernels_of(lmp);
@@ -352,8 +350,7 @@ Layout layout_of(const Models& models, bool wall) {
   const int law = models.law->history_size, rolling = has_history(Rollings{}, models.rolling) ? 3 : 0;
   Layout layout;
   if (law + friction + rolling == 0) return layout;
-  layout.root = models.law->root;
-  layout.jump = models.law->jump;
+  layout.gap = models.law->gap;
   layout.mirror.assign(law, 1.0);
   if (!wall) {
     layout.last_step = law;
@@ -363,7 +360,7 @@ Layout layout_of(const Models& models, bool wall) {
   layout.mirror.insert(layout.mirror.end(), even, 1.0);
   layout.mirror.insert(layout.mirror.end(), rolling, -1.0);
   if (models.compaction) {
-    layout.growth = static_cast<int>(layout.mirror.size());
+    layout.gap.growth = static_cast<int>(layout.mirror.size());
     layout.mirror.insert(layout.mirror.end(), growth_values, 1.0);
   }
   layout.values = static_cast<int>(layout.mirror.size());

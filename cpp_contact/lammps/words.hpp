@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "epdem/backbone.hpp"
+#include "epdem/exists.hpp"
 #include "kernels/block.hpp"
 #include "pointers.h"
 
@@ -23,9 +23,8 @@ struct Law {
   const char* condition;               // the condition of `valid` in words
   int place;                           // in the kernels
   int history_size;
-  int root;  // index in the history of a value > 0 while the bodies are attached, -1: no adhesion
-  int jump;  // index of the force that a crossing of touch or fold adds, -1: no adhesion
-  int most;  // index of the largest overlap, -1: none
+  GapPlaces gap;  // in the history
+  int most;       // index of the largest overlap, -1: none
   /// Writes the law of E* and these parameters, and the shares of the bodies, to the constants of a contact.
   void (*put)(double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
@@ -101,10 +100,10 @@ const double* readable_rows(const double* const* rows, int atoms, int capacity, 
 
 /// Values in the history of a contact.
 struct Layout {
-  int values = 0;                            // numbers of a contact
-  int root = -1, jump = -1, last_step = -1;  // places; last_step: of pairs with a history
-  int growth = -1;                           // place of GrowthState, with compaction
-  std::vector<double> mirror;                // 1, or -1 of a number that changes its sign when j takes the place of i
+  int values = 0;      // numbers of a contact
+  int last_step = -1;  // place, of pairs with a history
+  GapPlaces gap;
+  std::vector<double> mirror;  // 1, or -1 of a number that changes its sign when j takes the place of i
 };
 
 Layout layout_of(const Models& models, bool wall);

@@ -76,11 +76,11 @@ class EnergyTally {
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].
   void add_friction(bool wall, double lost, double stored, const Bodies& bodies) {
     const double part = wall ? 1.0 : 0.5;
-    book_friction_of(bodies.i, part * lost, part * stored);
-    if (!wall && bodies.j < bodies.nlocal) book_friction_of(bodies.j, part * lost, part * stored);
+    add_friction_to(bodies.i, part * lost, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) add_friction_to(bodies.j, part * lost, part * stored);
   }
 
-  /// What one contact adds to one body [J].
+  /// Adds the energies of one contact to one body [J].
   void credit(int body, double grown, double stored, bool bears) {
     if (grown > 0.0 || gives_back_) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
@@ -108,7 +108,7 @@ class EnergyTally {
         lmp->modify->find_fix_property(name, "property/atom", "scalar", 0, 0, caller, false));
   }
 
-  void book_friction_of(int body, double lost, double stored) {
+  void add_friction_to(int body, double lost, double stored) {
     friction_->vector_atom[body] += lost;
     springs_->vector_atom[body] += stored;
   }

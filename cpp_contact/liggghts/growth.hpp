@@ -64,7 +64,7 @@ class Growth {
   /// Three numbers per sphere, for a loop that adds by itself as `add` does.
   double* sums() { return sums_->array_atom[0]; }
 
-  /// What a contact of this step adds to a body.
+  /// Adds the dents of a contact of this step to a body.
   void add(int body, double cover, double volume, double area) {
     double* const sums = sums_->array_atom[body];
     sums[0] += cover;

@@ -87,6 +87,10 @@ double smallest_radius(LAMMPS_NS::LAMMPS* lmp) {
   return everywhere;
 }
 
+void register_contact_distance(LAMMPS_NS::LAMMPS* lmp, double factor) {
+  lmp->neighbor->register_contact_dist_factor(factor);
+}
+
 std::string model_names() {
   std::string names;
 #define EPDEM_NAME(Class) names += " " + model_name<Class<double>>();

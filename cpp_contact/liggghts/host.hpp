@@ -36,6 +36,9 @@ bool only_spheres(LAMMPS_NS::LAMMPS* lmp);
 /// The smallest radius of the spheres that are there or will be added; infinite if there are none. Collective.
 double smallest_radius(LAMMPS_NS::LAMMPS* lmp);
 
+/// Makes LIGGGHTS look at bodies up to this factor of the sum of their radii.
+void register_contact_distance(LAMMPS_NS::LAMMPS* lmp, double factor);
+
 /// Prints a line on the screen and into the log, on the first rank.
 inline void say(const LAMMPS_NS::LAMMPS* lmp, const std::string& line) {
   if (lmp->comm->me != 0) return;

@@ -18,16 +18,12 @@ class LawModel : public NormalModel {
 
  public:
   LawModel(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool wall, bool others_have_history)
-      : NormalModel(lmp, setup, wall, others_have_history, declaration(), State<Law>::slots, size) {
+      : NormalModel(lmp, setup, wall, others_have_history, declaration(), State<Law>::slots, size, gap_places<Law>()) {
     static_assert(std::is_trivially_copyable_v<State<Law>>);
     state_.flattens = Law::flattens;
   }
 
   int place() const override { return detail::place<Law>(); }
-  int root_slot() const override {
-    if constexpr (adheres<Law>) return offsetof(State<Law>, root) / sizeof(double);
-    return -1;
-  }
   void put_constants(int i, int j, double* c) const override {
     static_assert(sizeof(ContactConstants<Law>) <= kernels::most_constants * sizeof(double));
     std::memcpy(c, &table_[i * width_ + j], sizeof(ContactConstants<Law>));
@@ -96,21 +92,6 @@ class LawModel : public NormalModel {
     }
   }
 
-  bool attracts(const SurfacesCloseData& s) const override {
-    if constexpr (compacts<Law>) {
-      return compaction_ && stands(s);
-    } else if constexpr (!adheres<Law>) {
-      return false;
-    } else {
-      if (!s.contact_history) return false;
-      const bool keep = s.computeflag && s.shearupdate;
-      if (has_step() && now_ - s.contact_history[step_slot_] > keep) return false;
-      State<Law> before;
-      std::memcpy(static_cast<void*>(&before), s.contact_history + offset_, sizeof before);
-      return is_attached(before.root, before.jump, !keep);
-    }
-  }
-
  protected:
   void set_materials(const Materials& m) override {
     table_.assign(m.pairs.size(), ContactConstants<Law>{});
@@ -153,36 +134,23 @@ class LawModel : public NormalModel {
     }
   };
 
-  /// The growth of a contact whose state lies in its history; a contact that is new has none.
-  template <bool wall>
-  Growing<wall, double> growing(const SurfacesCloseData& s, bool is_new) const {
-    const double* const state = is_new ? nullptr : s.contact_history + growth_slot_;
-    if constexpr (wall)
-      return growing_at_wall(s.radi, growth_.of(s.i), state);
-    else
-      return growing_pair(s.radi, s.radj, growth_.of(s.i), growth_.of(s.j), state);
-  }
-
   /// The normal contact with growth; a step that is kept stores the state and adds the dents to the bodies.
   template <bool wall, class Normal>
   NormalContact<Law> grown(SurfacesIntersectData& s, bool keep, const Normal& normal) {
-    Growing<wall, double> growth = growing<wall>(s, has_step() && state_.is_new);
+    double* const state = s.contact_history + gap_.growth;
+    const double* const known = has_step() && state_.is_new ? nullptr : state;
+    Growing<wall, double> growth;
+    if constexpr (wall)
+      growth = growing_at_wall(s.radi, growth_.of(s.i), known);
+    else
+      growth = growing_pair(s.radi, s.radj, growth_.of(s.i), growth_.of(s.j), known);
     const NormalContact<Law> contact = normal(growth);
     if (!keep) return contact;
-    std::memcpy(s.contact_history + growth_slot_, &growth.state, sizeof growth.state);
+    std::memcpy(state, &growth.state, sizeof growth.state);
     const Dents<double>& d = growth.dents;
     growth_.add(s.i, d.cover_i, d.volume_i, d.area);
     if (!wall && s.j < atom->nlocal) growth_.add(s.j, d.cover_j, d.volume_j, d.area);
     return contact;
-  }
-
-  /// Whether grown bodies that do not overlap are in contact.
-  bool stands(const SurfacesCloseData& s) const {
-    const bool keep = s.computeflag && s.shearupdate;
-    const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= keep;
-    if (!keep && !known) return false;
-    return wall_ ? closes_gap(growing<true>(s, !known), s.rsq, !keep)
-                 : closes_gap(growing<false>(s, !known), s.rsq, !keep);
   }
 
   static Declaration declaration() {

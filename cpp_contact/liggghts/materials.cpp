@@ -181,7 +181,7 @@ void compare_strength(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Mate
     }
 }
 
-/// Says what is left of a restitution that damps the normal force in LIGGGHTS's own models.
+/// Names the effect of a restitution, which damps the normal force in LIGGGHTS's own models.
 void explain_restitution(LAMMPS_NS::LAMMPS* lmp, const Reader& reader, const Declaration& law, Dashpot dashpot) {
   if (!reader.given("coefficientRestitution")) return;
   const char* const effect = dashpot == Dashpot::off ? " has no effect" : " acts on the tangential dashpot only";

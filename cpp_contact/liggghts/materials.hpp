@@ -14,14 +14,14 @@ class LAMMPS;
 
 namespace epdem::liggghts {
 
-/// What the dashpot of the tangential model makes of coefficientRestitution.
+/// Use of coefficientRestitution by the dashpot of the tangential model.
 enum class Dashpot {
   off,       // not used
   optional,  // used if the property is there, else no dashpot
   required,  // the dashpot is the whole tangential model
 };
 
-/// What a law declares about its parameters.
+/// Declaration of a law and its parameters.
 struct Declaration {
   std::string model;  // "ep/thornton"
   const Parameter* parameters;

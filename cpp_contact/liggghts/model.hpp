@@ -23,7 +23,7 @@ struct Ids {
   }
 };
 
-/// What LIGGGHTS's models are built from.
+/// Arguments of the constructors of LIGGGHTS's models.
 struct Site {
   LAMMPS_NS::LAMMPS* lmp;
   LIGGGHTS::IContactHistorySetup* history;
@@ -80,12 +80,12 @@ inline bool others_have_history(const Ids& ids) {
 /// Whether the tangential model of a contact computes its work.
 inline bool adds_friction(const Ids& ids) {
   bool found = false;
-  Frictions::each([&](auto m, int) { found |= m.id == ids.tangential && m.books_work; });
+  Frictions::each([&](auto m, int) { found |= m.id == ids.tangential && m.adds_work; });
   return found;
 }
 
-/// What LIGGGHTS's pair and wall loops call, with all models behind virtual calls: the loops for throughput are in
-/// loop/. The parts have the order of LIGGGHTS's own models.
+/// Contact model of LIGGGHTS's pair and wall loops, with all models behind virtual calls: the loops for throughput are
+/// in loop/. The parts have the order of LIGGGHTS's own models.
 class Model : public ContactModelBase {
  public:
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
@@ -104,7 +104,7 @@ class Model : public ContactModelBase {
   struct LoopSettings {
     bool torsion = false, cohesion_slides = false, heating = false, twist = false;
 
-    /// What our loops do not include; nullptr: nothing.
+    /// Setting that our loops do not include; nullptr: none.
     const char* missing() const {
       if (heating) return "heating_tangential_history on";
       return twist ? "torsion on" : nullptr;

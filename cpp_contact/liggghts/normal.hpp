@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "energy_tally.hpp"
+#include "epdem/exists.hpp"
 #include "growth.hpp"
 #include "host.hpp"
 #include "materials.hpp"
@@ -47,7 +48,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
 
   /// adds_friction: the tangential model beside it computes its work.
   void postSettings(LIGGGHTS::IContactHistorySetup* setup, bool adds_friction, bool cohesion) {
-    books_friction_ = adds_friction;
+    adds_friction_ = adds_friction;
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
     if (law_.adheres && limit_force_) refuse("limitForce", "it would take the attraction away");
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
@@ -56,7 +57,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (dissipated_energy_)
       refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
-    if (plastic_work_ && !wall_) tally_.create(lmp, books_friction_, law_.adheres);
+    if (plastic_work_ && !wall_) tally_.create(lmp, adds_friction_, law_.adheres);
     if (contact_strain_ && !wall_) LargestStrain::create(lmp);
     if (!compaction_) return;
     if (!law_.compacts) refuse("compaction", "only ep/cavity has it");
@@ -65,7 +66,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (!wall_) Growth::create(lmp);
     for (const char* slot : GrowthState<double>::slots) {
       const int at = setup->add_history_value(slot, "0");
-      if (growth_slot_ < 0) growth_slot_ = at;
+      if (gap_.growth < 0) gap_.growth = at;
     }
   }
 
@@ -79,7 +80,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     width_ = m.width;
     set_materials(m);
     if (cohesive > 0.0) compare_cohesion(lmp, law_.model, width_, resistances(cohesive));
-    if (plastic_work_) tally_.connect(lmp, law_.model, books_friction_, law_.adheres, compaction_);
+    if (plastic_work_) tally_.connect(lmp, law_.model, adds_friction_, law_.adheres, compaction_);
     if (contact_strain_) strain_.connect(lmp, law_.model);
     state_.tally = tally();
     if (law_.adheres) reach();
@@ -87,7 +88,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
       fail("the pair style has compaction on, and this wall needs it, too");
     if (!compaction_) return;
     growth_.connect(lmp, law_.model);
-    neighbor->register_contact_dist_factor(1.0 + growth_reach);
+    register_contact_distance(lmp, 1.0 + growth_reach);
   }
 
   double stressStrainExponent() const { return 1.5; }
@@ -113,7 +114,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     now_ = static_cast<double>(clock_);
   }
 
-  /// What LIGGGHTS prepares only for pairs that overlap, by its own operations.
+  /// Values that LIGGGHTS prepares only for pairs that overlap, by its own operations.
   void prepare(SurfacesIntersectData& s) const {
     if (wall_) return;
     s.r = LAMMPS_NS::vectorMag3D(s.delta);
@@ -136,29 +137,39 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (s.contact_flags) *s.contact_flags &= ~CONTACT_NORMAL_MODEL;
     if (!s.contact_history) return;
     std::fill_n(s.contact_history + offset_, history_size_, 0.0);
-    if (compaction_) std::fill_n(s.contact_history + growth_slot_, growth_values, 0.0);
+    if (compaction_) std::fill_n(s.contact_history + gap_.growth, growth_values, 0.0);
   }
 
   virtual void surfacesIntersect(SurfacesIntersectData& s, ForceData& fi, ForceData& fj) = 0;
 
-  /// Whether bodies that do not overlap are in contact, or parted in the very step that is evaluated once more.
-  virtual bool attracts(const SurfacesCloseData& s) const = 0;
+  /// Whether bodies that do not overlap are in contact, or parted in the very step that is evaluated once more. A
+  /// template, because LIGGGHTS-PFM, which does not call it, lacks members of the data.
+  template <class Data>
+  bool attracts(const Data& s) const {
+    if (!s.contact_history || !gap_.any()) return false;
+    const bool keep = s.computeflag && s.shearupdate;
+    const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= keep;
+    Gap gap{s.rsq, s.radi, wall_ ? 0.0 : s.radj, {}, {}};
+    if (compaction_) gap.i = growth_.of(s.i);
+    if (compaction_ && !wall_) gap.j = growth_.of(s.j);
+    return exists(gap_, known ? s.contact_history : nullptr, gap, !keep);
+  }
+  const GapPlaces& gap() const { return gap_; }
 
-  /// The law's place in the register, where its history says that bodies are attached (-1: nowhere), and its constants
-  /// of two types, for our loops.
+  /// The law's place in the register, and its constants of two types, for our loops.
   virtual int place() const = 0;
-  virtual int root_slot() const = 0;
   virtual void put_constants(int i, int j, double* constants) const = 0;
 
  protected:
   NormalModel(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool wall, bool others_have_history,
-              const Declaration& law, const char* const* slots, int history_size)
+              const Declaration& law, const char* const* slots, int history_size, GapPlaces gap)
       : Pointers(lmp), wall_(wall), others_have_history_(others_have_history), history_size_(history_size), law_(law) {
     // Flag "0": an even quantity; "1" would change its sign when the pair is stored from the other side.
     for (int k = 0; k < history_size; ++k) {
       const int at = setup->add_history_value(slots[k], "0");
       if (k == 0) offset_ = at;
     }
+    if (gap.root >= 0) gap_ = {offset_ + gap.root, offset_ + gap.jump};
     if (has_step()) {
       step_slot_ = setup->add_history_value("last_step", "0");
       if (history_size > 0 && step_slot_ != offset_ + history_size) fail("its history values are not side by side");
@@ -195,7 +206,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
 
   const bool wall_, others_have_history_;
   const int history_size_;
-  int width_ = 0, offset_ = 0, step_slot_ = -1, growth_slot_ = -1;
+  int width_ = 0, offset_ = 0, step_slot_ = -1;
+  GapPlaces gap_;
   double now_ = 0.0;
   bool plastic_work_ = false, contact_strain_ = false, compaction_ = false;
   EnergyTally tally_;
@@ -212,7 +224,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (!std::isfinite(smallest)) return;  // no spheres, and nothing that will add any
     const double gap = largest_gap(smallest), factor = 1.005 + gap / smallest;
     if (!(factor > neighbor->contactDistanceFactor)) return;
-    neighbor->register_contact_dist_factor(factor);
+    register_contact_distance(lmp, factor);
     char line[160];
     std::snprintf(line, sizeof line,
                   "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g",
@@ -242,7 +254,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::PairGran* pair_ = nullptr;
   LAMMPS_NS::FixWallGran* wall_gran_ = nullptr;
   bigint clock_ = 0;  // step of the last pass
-  bool books_friction_ = false;
+  bool adds_friction_ = false;
   bool viscous_ = false, tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
   bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;
 };

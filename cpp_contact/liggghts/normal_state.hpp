@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What passes from a law's adapter to epdem's tangential model beside it.
+// State that the normal model passes to epdem's tangential model.
 #pragma once
 
 #include "energy_tally.hpp"
@@ -7,7 +7,7 @@
 
 namespace epdem::liggghts {
 
-/// What the normal model knows of the contact at hand and LIGGGHTS's data have no room for.
+/// Results of the normal model for the present contact that LIGGGHTS's data have no room for.
 struct NormalContactState {
   Pressed<double> pressed{};  // but for the load: that is LIGGGHTS's Fn, which cohesion may change
   double stiffness = 0.0;     // 8 G* [Pa]

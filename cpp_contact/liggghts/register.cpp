@@ -223,12 +223,6 @@ Ids refused(int why) { return {unknown_law, why, COHESION_OFF, ROLLING_OFF, SURF
 #ifdef EPDEM_BUILT_FOR
 bool starts_with_ep(const std::string& name) { return name.compare(0, 2, "ep") == 0; }
 
-bool is_friction(const std::string& name) {
-  bool found = false;
-  Frictions::each([&](auto m, int) { found |= name == m.name; });
-  return found;
-}
-
 bool unknown_name(const std::string& name) {
   if (!starts_with_ep(name)) return false;
 #define EPDEM_KNOWN(Class) \
@@ -265,8 +259,8 @@ const struct Registration {
 #ifdef EPDEM_BUILT_FOR
 /// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": for a name that starts with
 /// ep the message lists what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
-/// the launcher or a preloaded library first; beside those of loop/mesh.cpp it is the one symbol that the plugin
-/// exports.
+/// the launcher or a preloaded library first; the other symbols that
+/// the plugin exports are those of loop/.
 [[gnu::visibility("default")]] int64_t LIGGGHTS::ContactModels::Factory::select(
     int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
   using namespace epdem::liggghts;
@@ -278,7 +272,7 @@ const struct Registration {
       ours = starts_with_ep(name);
     }
     if (word == "tangential" && starts_with_ep(name)) {
-      if (!is_friction(name)) return refused(unknown_tangential).hash();
+      if (epdem::Frictions::find(name.c_str()) < 0) return refused(unknown_tangential).hash();
       if (!ours) return refused(foreign_normal).hash();
     }
   }

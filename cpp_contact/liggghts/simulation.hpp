@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What belongs to one simulation from call to call of LIGGGHTS.
+// State of one simulation between calls of LIGGGHTS.
 #pragma once
 
 #include <cstring>

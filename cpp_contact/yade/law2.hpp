@@ -57,16 +57,11 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   /// Place of the model with this name in its list.
   template <class Models>
   int place_of(Models, const char* attribute, const string& wanted) const {
+    const int found = Models::find(wanted.c_str());
+    if (found >= 0) return found;
     string names;
-    int found = -1;
-    Models::each([&](auto model, int place) {
-      const string name = epdem::plain_name(model.name);
-      names += (place ? ", " : "") + name;
-      if (wanted == name) found = place;
-    });
-    if (found < 0)
-      throw std::invalid_argument(getClassName() + "." + attribute + " = '" + wanted + "', must be one of " + names);
-    return found;
+    Models::each([&](auto model, int place) { names += (place ? ", " : "") + string(epdem::plain_name(model.name)); });
+    throw std::invalid_argument(getClassName() + "." + attribute + " = '" + wanted + "', must be one of " + names);
   }
 
   static Vec vec(const Vector3r& v) { return {v[0], v[1], v[2]}; }
@@ -104,7 +99,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     [[gnu::noinline]] void add(const epdem::NormalEnergies<double>& e) const {
       phys.elasticEnergy = e.stored;
       phys.adhesionLoss += e.adhesion_loss;
-      functor.book_plastic(phys, contact, e.plastic_work_step);
+      functor.add_plastic(phys, contact, e.plastic_work_step);
       functor.add(elastic, e.stored);
       functor.add(adhesion, e.adhesion_loss);
       functor.share(phys, contact, &EpState::adhesionLoss, e.adhesion_loss);
@@ -224,7 +219,12 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       else
         history.growth = epdem::growing_pair(c.radius_i, c.radius_j, sums_of(s1), sums_of(s2), state);
     }
-    if (!epdem::exists<Law>(c.overlap, c.distance * c.distance, history.law, history.growth)) return false;
+    if (!(c.overlap > 0.0)) {
+      constexpr epdem::GapPlaces places = epdem::gap_places<Law>(grows ? epdem::in_yade::growth_at<Law> : -1);
+      epdem::Gap gap{c.distance * c.distance, c.radius_i, c.radius_j, {}, {}};
+      if constexpr (grows) gap.i = history.growth.i, gap.j = history.growth.j;
+      if (!epdem::exists(places, phys.history.data(), gap, false)) return false;
+    }
     if (phys.frictionId == Friction::id) load(phys, friction_at, history.friction);
     phys.frictionId = Friction::id;
     if (rollingModel_ != 0) load(phys, rolling_at, history.rolling);
@@ -263,7 +263,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   }
 
   /// Adds plastic work of a step [J].
-  [[gnu::noinline]] void book_plastic(EpPhys& phys, const Interaction& contact, double work) {
+  [[gnu::noinline]] void add_plastic(EpPhys& phys, const Interaction& contact, double work) {
     phys.plasticWork += work;
     add(plastic, work);
     share(phys, contact, &EpState::plasticWork, work);

@@ -46,15 +46,12 @@ constexpr std::array<LawParameter, parameter_count> all_parameters() {
 }
 inline constexpr std::array<LawParameter, parameter_count> parameters = all_parameters();
 
-constexpr bool same(const char* a, const char* b) {
-  while (*a && *a == *b) ++a, ++b;
-  return *a == *b;
-}
+using detail::same_text;
 
 /// Where the value of a property is kept: at the place of its first law.
 constexpr int place_of(const char* property) {
   int at = 0;
-  while (!same(parameters[at].declared->property, property)) ++at;
+  while (!same_text(parameters[at].declared->property, property)) ++at;
   return at;
 }
 constexpr bool is_first(int at) { return place_of(parameters[at].declared->property) == at; }
@@ -72,7 +69,7 @@ inline LawValues fallbacks() {
 inline std::string laws_with(const char* property) {
   std::string names;
   for (const LawParameter& p : parameters)
-    if (same(p.declared->property, property)) names += (names.empty() ? "" : ", ") + std::string(p.law);
+    if (same_text(p.declared->property, property)) names += (names.empty() ? "" : ", ") + std::string(p.law);
   return names;
 }
 

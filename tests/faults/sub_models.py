@@ -13,7 +13,7 @@ namespace epdem {
 struct ToyFriction {
   static constexpr const char* name = "ep/toy";
   static constexpr int id = 60, even_values = 0;
-  static constexpr bool of_liggghts = false, books_work = false;
+  static constexpr bool of_liggghts = false, adds_work = false;
   template <class T>
   struct History {
     Vec<T> stretch;

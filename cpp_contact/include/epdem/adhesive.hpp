@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What adhesive laws share: the curve of an elastic contact (Johnson, Kendall and Roberts 1971) by y = sqrt(a), and the
-// forces of the two steps in which a contact forms and ends.
+// The common part of adhesive laws: the curve of an elastic contact (Johnson, Kendall and Roberts 1971) by y = sqrt(a),
+// and the forces of the two steps in which a contact forms and ends.
 //
 // y^4/R - c y = alpha - alpha_p, c = sqrt(2 pi Gamma/E*); the fold, where the contact ends, lies at y_f^3 = c R/4.
 #pragma once
@@ -22,7 +22,7 @@ inline constexpr double fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3)
 /// Work of adhesion [J/m^2] of two surfaces of these energies [J/m^2].
 inline double work_of_adhesion(double gamma_i, double gamma_j) noexcept { return 2.0 * sqrt(gamma_i * gamma_j); }
 
-/// What an attached contact remembers as its root where Gamma = 0.
+/// Root of an attached contact where Gamma = 0.
 inline constexpr double no_root = std::numeric_limits<double>::min();
 
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0. Of an R that grew a little
@@ -89,7 +89,7 @@ inline T largest_gap(T c, T R_star) noexcept {
   return 0.75 * c * y_f;
 }
 
-/// What the force of the step of touch lacks [N]. A force that jumps within a step leaves velocity Verlet of first
+/// Correction of the force of the step of touch [N]. A force that jumps within a step leaves velocity Verlet of first
 /// order: the sum over the steps takes the jump for a whole step, but it has lasted for the share beyond/closing, and
 /// half a step belongs to the trapezoid that starts here. `beyond` is the overlap since touch, `closing` the closing
 /// speed at the half step times the step [m]. Nothing for a contact that is there without a crossing.
@@ -112,11 +112,5 @@ inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept 
 }
 
 }  // namespace adhesive
-
-/// Whether bodies across a gap are attached, by `root` and `jump` of the history of a law with adhesion. A step that is
-/// evaluated once more also counts bodies that have just parted, whose last force acts.
-inline bool is_attached(double root, double jump, bool repeats) noexcept {
-  return root > 0.0 || (repeats && jump != 0.0);
-}
 
 }  // namespace epdem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every law's loading backbone returns and declares. A law is one header beside this one.
+// Result and declaration of every law's loading backbone. A law is one header beside this one.
 #pragma once
 
 #include <iterator>
@@ -106,7 +106,7 @@ Law law_of(Number<Law> E_star, const Number<Law>* parameters, Number<Law> share)
   return law;
 }
 
-/// What a step of a law returns.
+/// Result of a step of a law.
 template <class Law>
 struct Step {
   Number<Law> force;   // F [N], negative only with adhesion

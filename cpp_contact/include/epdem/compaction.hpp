@@ -92,8 +92,10 @@ struct Growing {
   Dents<T> dents;        // after the step
 };
 
-/// The sums of one body of a host, which stores those of all side by side.
-inline BodySums<double> sums_of(const double* all, long body) noexcept { return {all[2 * body], all[2 * body + 1]}; }
+/// The sums of one body of a host, which stores those of all side by side; null: without compaction.
+inline BodySums<double> sums_of(const double* all, long body) noexcept {
+  return all ? BodySums<double>{all[2 * body], all[2 * body + 1]} : BodySums<double>{};
+}
 
 /// A contact as a host stores it: radii [m], sums of the bodies, values of its GrowthState; null: a new contact.
 inline Growing<false, double> growing_pair(double radius_i, double radius_j, BodySums<double> i, BodySums<double> j,
@@ -178,12 +180,6 @@ EPDEM_INLINE Added<T> added_overlap(const Growing<wall, T>& c, bool repeats) noe
   if (repeats) return {c.state.last, c.state.added};
   const T now = max(T{}, detail::grown(c, c.i.growth, c.j.growth) - c.state.own) + c.state.shift;
   return {now, select(c.state.raw > 0.0, max(now, 2.0 * now - c.state.last), now)};
-}
-
-/// Whether growth closes the gap of a contact whose centres, or centre and wall, are sqrt(rsq) apart.
-template <bool wall>
-inline bool closes_gap(const Growing<wall, double>& c, double rsq, bool repeats) noexcept {
-  return c.radius_i + c.radius_j - std::sqrt(rsq) + added_overlap(c, repeats).extrapolated > 0.0;
 }
 
 /// Grown spheres whose growth over the radius is at most `largest` touch below this factor of the squared sum of their

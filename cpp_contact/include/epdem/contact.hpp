@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "adhesive.hpp"
-#include "compaction.hpp"
+#include "exists.hpp"
 #include "settings.hpp"
 #include "sub_models.hpp"
 #include "tangential.hpp"
@@ -15,7 +15,7 @@
 
 namespace epdem {
 
-/// What a pair of materials has in common; numbers of one type only.
+/// Constants of a pair of materials; numbers of one type only.
 template <class Law>
 struct ContactConstants {
   Number<Law> shear_modulus{};  // G* [Pa]
@@ -158,7 +158,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   return now;
 }
 
-/// What friction reads of a step of a law; `load` is the force that limits it.
+/// Input of friction from a step of a law; `load` is the force that limits it.
 template <class Law>
 EPDEM_INLINE Pressed<Number<Law>> pressed_by(const Step<Law>& now, const Number<Law>& load) noexcept {
   if constexpr (Law::flattens) return {load, now.radius, now.after.point.radius, now.after.point.flatness};
@@ -215,28 +215,12 @@ EPDEM_INLINE auto attached(const State<Law>& before) noexcept {
 /// All values of a history where the mask says so, else 0.
 template <class T, class M, class History>
 EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
-  if constexpr (!std::is_empty_v<History>) {
-    T* const value = reinterpret_cast<T*>(&history);
-    for (std::size_t k = 0; k < sizeof(History) / sizeof(T); ++k) value[k] = select(mask, value[k], T{});
-  }
+  if constexpr (!std::is_empty_v<History>)
+    for (std::size_t k = 0; k < sizeof(History) / sizeof(T); ++k)
+      put_number(history, k, select(mask, number_at<T>(history, k), T{}));
 }
 
 }  // namespace detail
-
-/// Whether bodies are in contact: they overlap, are attached across a gap, or have grown across it. rsq: squared
-/// distance of the centres, or of centre and wall; growth: a Growing with compaction.
-template <class Law, class Growth>
-inline bool exists(double overlap, double rsq, const State<Law>& before, const Growth& growth,
-                   bool repeats = false) noexcept {
-  if (overlap > 0.0) return true;
-  (void)before;
-  if constexpr (!std::is_same_v<Growth, NoGrowth>)
-    return closes_gap(growth, rsq, repeats);
-  else if constexpr (adheres<Law>)
-    return is_attached(before.root, before.jump, repeats);
-  else
-    return false;
-}
 
 /// One contact. `history` holds the values before the step, then the values after the step.
 template <class Friction, bool wall, class Law, class RollingHistory, class Growth, class Mass, class Observer>

@@ -33,7 +33,7 @@ struct Hertz {
 
   /// Largest overlap of the elastic branch [m].
   T elastic_overlap(T) const noexcept { return constant<T>(std::numeric_limits<double>::infinity()); }
-  /// The backbone at `delta` > elastic_overlap; whatever elsewhere.
+  /// Valid for delta > elastic_overlap; unspecified below.
   Point<T> load(T R_star, T delta) const noexcept { return hertz_point(E_star, R_star, delta); }
   /// Work along the backbone to `delta` [J].
   T work(T R_star, T delta) const noexcept { return hertz_work(E_star, R_star, delta); }

@@ -26,7 +26,7 @@ struct Jkr {
   static constexpr double default_ratio = not_given;
   static constexpr bool strength_by_ratio = false;
 
-  /// What a contact remembers.
+  /// History of a contact.
   struct State {
     static constexpr const char* slots[] = {"root", "jump"};
     T root{};  // (c R*)^(1/3) while the bodies are attached [m^(1/2)], else 0

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -203,6 +204,18 @@ EPDEM_INLINE T max(T a, T b) noexcept {
 template <class M, class T>
 EPDEM_INLINE T only(M mask, T x) noexcept {
   return select(mask, x, constant<T>(std::numeric_limits<double>::quiet_NaN()));
+}
+
+/// Number k of a class that has numbers of type T alone.
+template <class T, class Numbers>
+EPDEM_INLINE T number_at(const Numbers& all, std::size_t k) noexcept {
+  T x;
+  ::memcpy(&x, reinterpret_cast<const char*>(&all) + k * sizeof x, sizeof x);
+  return x;
+}
+template <class Numbers, class T>
+EPDEM_INLINE void put_number(Numbers& all, std::size_t k, const T& x) noexcept {
+  ::memcpy(reinterpret_cast<char*>(&all) + k * sizeof x, &x, sizeof x);
 }
 
 template <class T>

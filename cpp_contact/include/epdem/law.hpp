@@ -54,7 +54,7 @@ inline State<Law> remember(const Law& law, Number<Law> R_star, Number<Law> delta
   }
 }
 
-/// A stored overlap [m] of this size was never one, and is forgotten.
+/// Larger stored overlaps [m] are uninitialised history and are reset.
 inline constexpr double no_overlap = 1e100;
 
 /// Whether a stored peak can be one: a restart of a run with another law may have left other numbers there.
@@ -198,7 +198,7 @@ inline constexpr bool has_work_between<
 
 }  // namespace detail
 
-/// What a step, whose elastic energy is `stored`, added to the plastic work of a contact [J].
+/// Plastic work [J] of a step whose elastic energy is `stored`.
 template <class Law>
 inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
                                   Number<Law> stored) noexcept {

@@ -8,7 +8,7 @@
 
 namespace epdem {
 
-/// What the bodies do in one step.
+/// Motion of the bodies in one step.
 template <class T>
 struct MotionStep {
   T overlap;  // [m]

@@ -6,7 +6,7 @@
 
 namespace epdem {
 
-/// What a plane oblique impact has beside a normal one.
+/// Input of a plane oblique impact beside that of a normal one.
 template <class T>
 struct ObliqueInput {
   T slip;    // velocity of the surfaces against each other before [m/s]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What two bodies in contact have in common: effective modulus, radius and mass (Johnson 1985, section 4.2).
+// Constants of two bodies in contact: effective modulus, radius and mass (Johnson 1985, section 4.2).
 #pragma once
 
 #include <cmath>
@@ -47,7 +47,7 @@ inline double strain_share(double strength_i, double strength_j, double hardenin
   return is_softer(strength_i, strength_j) ? softer : 1.0 - softer;
 }
 
-/// What a contact knows of its two bodies apart.
+/// Shares of the two bodies of a contact.
 template <class T>
 struct BodyShares {
   T strain_i = T{} + 0.5;  // strain_share of i

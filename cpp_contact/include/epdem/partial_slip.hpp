@@ -35,7 +35,7 @@ struct Lobatto<3> {
   static constexpr double total = 27.0 / 28.0;
 };
 
-/// What a contact with partial slip remembers; 3 N + 1 numbers. All zero: nothing.
+/// History of a contact with partial slip, 3 N + 1 numbers; zeros: a new contact.
 template <int N, class T>
 struct SlipState {
   Vec<T> stretch[N];  // of the springs at the nodes [m]

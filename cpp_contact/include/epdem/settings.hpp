@@ -6,7 +6,7 @@ namespace epdem {
 /// A time step [s] of no motion, for evaluations beside the steps.
 inline constexpr double no_time = 1e-200;
 
-/// What all contacts of a step have in common.
+/// Settings of a step, the same for all contacts.
 struct ContactSettings {
   double dt;              // time step [s]; no_time if the last step is repeated
   int rolling, cohesion;  // places in Rollings and Cohesions

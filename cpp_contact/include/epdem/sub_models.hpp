@@ -12,6 +12,20 @@
 
 namespace epdem {
 
+namespace detail {
+
+constexpr bool same_text(const char* a, const char* b) noexcept {
+  while (*a && *a == *b) ++a, ++b;
+  return *a == *b;
+}
+
+}  // namespace detail
+
+/// The name of a model without the prefix ep/, which LIGGGHTS needs for models that it lacks.
+constexpr const char* plain_name(const char* name) noexcept {
+  return name[0] == 'e' && name[1] == 'p' && name[2] == '/' ? name + 3 : name;
+}
+
 template <class... Models>
 struct List {
   static constexpr int size = sizeof...(Models);
@@ -27,6 +41,16 @@ struct List {
   static constexpr int place(int id) noexcept {
     int at = 0, found = -1;
     ((Models::id == id ? void(found = at++) : void(++at)), ...);
+    return found;
+  }
+
+  /// The place of the model with this name, with or without its prefix; -1: none.
+  static constexpr int find(const char* name) noexcept {
+    int at = 0, found = -1;
+    const auto is = [name](const char* own) {
+      return detail::same_text(name, own) || detail::same_text(name, plain_name(own));
+    };
+    ((is(Models::name) ? void(found = at++) : void(++at)), ...);
     return found;
   }
 };
@@ -49,11 +73,6 @@ using Cohesions = List<
     Sjkr,
     Sjkr2>;
 // clang-format on
-
-/// The name of a model without the prefix ep/, which LIGGGHTS needs for models that it lacks.
-constexpr const char* plain_name(const char* name) noexcept {
-  return name[0] == 'e' && name[1] == 'p' && name[2] == '/' ? name + 3 : name;
-}
 
 /// Whether the model at this place of its list has a history.
 template <class... Models>

@@ -28,7 +28,7 @@ struct ThorntonNing {
   static constexpr double default_ratio = 2.8;
   static constexpr bool strength_by_ratio = true;
 
-  /// What a contact remembers: its opening curve. One that broke inside its dent keeps all but the root.
+  /// History of a contact: its opening curve. One that broke inside its dent keeps all but the root.
   struct State {
     static constexpr const char* slots[] = {"delta_max", "root", "dent", "R_open", "jump"};
     T delta_max{};  // largest overlap [m]
@@ -134,7 +134,7 @@ inline T grown(const ThorntonNing<T>& law, T R_star, T R, T root, T delta, M wid
 /// As the step of `Jkr`. Growth moves the opening curve, and the force is always the force of the opening curve. Where
 /// this curve begins, y is the y of growth: a wide contact takes it from there, which saves the curve, in the step of
 /// growth and in the same step taken again, so that both give the same bits. A contact that broke inside its dent forms
-/// again where that curve begins; one that is apart at delta <= 0 forgets.
+/// again where that curve begins; the history is cleared when separated and delta <= 0.
 template <class T>
 inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const typename ThorntonNing<T>::State& before,
                                   T delta, T closing) noexcept {

@@ -15,23 +15,6 @@ namespace epdem::liggghts::loop {
 using namespace LIGGGHTS::ContactModels;
 using LAMMPS_NS::PairGran;
 
-namespace {
-
-/// The kernels of EPDEM_SIMD; ends the run if the processor lacks them or there are none.
-const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp) {
-  const char* const named = std::getenv("EPDEM_SIMD");
-  const Kernels* const found = kernels_of(named ? named : "");
-  if (!found) {
-    const std::string text = std::string("EPDEM_SIMD = ") + named +
-                             ": this processor has no such instructions; leave it unset, or "
-                             "take sse2, avx2 or avx512";
-    lmp->error->all(FLERR, text.c_str());
-  }
-  return *found;
-}
-
-}  // namespace
-
 bool generic_loop(LAMMPS_NS::LAMMPS* lmp) {
   const char* const loop = std::getenv("EPDEM_LOOP");
   if (!loop || !*loop) return false;
@@ -43,7 +26,11 @@ bool generic_loop(LAMMPS_NS::LAMMPS* lmp) {
 
 LoopState& state_of(LAMMPS_NS::LAMMPS* lmp) {
   auto& loops = Simulation::of(lmp).loops;
-  if (!loops) loops = std::make_shared<LoopState>(LoopState{generic_loop(lmp), chosen_kernels(lmp)});
+  if (loops) return *loops;
+  std::string refusal;
+  const Kernels* const kernels = chosen_kernels(refusal);
+  if (!kernels) lmp->error->all(FLERR, refusal.c_str());
+  loops = std::make_shared<LoopState>(LoopState{generic_loop(lmp), *kernels});
   return *loops;
 }
 
@@ -77,8 +64,7 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt) {
 }
 
 void note_strain(LargestStrain& strain, const Block& b) {
-  strain.note(b.i[0], *std::max_element(b.radius_ratio, b.radius_ratio + most_lanes),
-              *std::max_element(b.overlap_ratio, b.overlap_ratio + most_lanes));
+  strain.note(b.i[0], largest_strain(b, 0), largest_strain(b, 1));
 }
 
 const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
@@ -87,7 +73,7 @@ const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int 
   if (force->newton_pair) return "newton on";
   if (atom->molecular) return "bonded particles";
   if (pair->storeSumDelta()) return "surface multicontact";
-  if (neighbor->contactDistanceFactor != 1.0 && plan.root < 0 && !plan.growth) return "contacts at a distance";
+  if (neighbor->contactDistanceFactor != 1.0 && !plan.gap.any()) return "contacts at a distance";
   if (modify->n_fixes_style("insert/stream/predefined") > 0) return "fix insert/stream/predefined";
   if (vflag) return "steps that ask for the virial";
   if (addflag) return "steps of compute pair/gran/local";
@@ -104,9 +90,9 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   mixed_ = plan.width > 2 && several_types(atom->type, atom->nlocal + atom->nghost);
   flags_ = CONTACT_NORMAL_MODEL | (plan.friction ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.settings.cohesion ? CONTACT_COHESION_MODEL : 0) | (plan.rolls ? CONTACT_ROLLING_MODEL : 0);
-  plan.growth     ? gather<Reach::grown>(plan)
-  : plan.root < 0 ? gather<Reach::touching>(plan)
-                  : gather<Reach::attached>(plan);
+  plan.growth      ? gather<Reach::grown>(plan)
+  : plan.gap.any() ? gather<Reach::attached>(plan)
+                   : gather<Reach::touching>(plan);
 }
 
 void PairLoop::read_lists() {
@@ -134,8 +120,9 @@ void PairLoop::gather(const Plan& plan) {
   const double apart = neighbor->contactDistanceFactor;
   const auto stands = [&](int i, int j, int place) {
     const int slot = place - pairs_.first(i);
-    if (reach == Reach::grown ? closes_gap(plan, i, j, slot) : is_attached(plan, i, slot)) return true;
-    pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
+    int& flag = pair_->listgranhistory->firstneigh[i][slot];
+    if ((reach == Reach::grown || flag != 0) && stands_across_gap(plan, i, j, slot)) return true;
+    flag &= ~flags_;
     return false;
   };
   const double factor = reach == Reach::grown ? plan.growth->factor() : apart * apart;
@@ -157,20 +144,10 @@ void PairLoop::finish(const Plan& plan, int n) {
   if (plan.tally && plan.adds_friction) add_friction(*plan.tally, n);
 }
 
-bool PairLoop::is_attached(const Plan& plan, int i, int slot) const {
-  if (pair_->listgranhistory->firstneigh[i][slot] == 0) return false;
-  const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
-  return h[plan.root] > 0.0 && pass_.now - h[plan.last_step] <= 1.0;
-}
-
-bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) const {
-  const double *const x = atom->x[0], *const radius = atom->radius;
-  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+bool PairLoop::stands_across_gap(const Plan& plan, int i, int j, int slot) const {
   const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
   const bool is_new = pass_.now - h[plan.last_step] > 1.0;
-  const auto c = growing_pair(radius[i], radius[j], sums_of(pass_.sums, i), sums_of(pass_.sums, j),
-                              is_new ? nullptr : h + pair_->dnum() - growth_values);
-  return epdem::closes_gap(c, dx * dx + dy * dy + dz * dz, false);
+  return exists(plan.gap, is_new ? nullptr : h, gap_of(pass_, atom->radius, i, j), false);
 }
 
 /// Gathers n contacts and marks them in LIGGGHTS's list.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "energy_tally.hpp"
+#include "epdem/exists.hpp"
 #include "growth.hpp"
 #include "kernels/pair_list.hpp"
 #include "state.hpp"
@@ -25,7 +26,8 @@ struct Plan {
   EnergyTally* tally = nullptr;     // where plastic work is added, if it is requested
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
   Growth* growth = nullptr;         // of the spheres, with compaction
-  int root = -1, last_step = -1;    // with adhesion, places in a history: root > 0 while attached, last evaluation
+  GapPlaces gap;                    // in a history
+  int last_step = -1;               // place in a history
   int width = 0;                    // number of types + 1
   std::vector<double> constants;    // most_constants for each type of i * width + type of j; see Constant
 };
@@ -64,8 +66,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void gather(const Plan& plan);
   template <Reach reach>
   void finish(const Plan& plan, int n);
-  bool is_attached(const Plan& plan, int i, int slot) const;
-  bool closes_gap(const Plan& plan, int i, int j, int slot) const;
+  bool stands_across_gap(const Plan& plan, int i, int j, int slot) const;
   void fetch(const Plan& plan, int n);
   template <bool torques, bool tallies, Reach reach>
   void scatter(const Plan& plan, int n);

@@ -6,13 +6,12 @@
 // spheres with contacts; LIGGGHTS's own functions compute the geometry of a contact and find its history, so that not
 // one bit differs.
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "fix_contact_history_mesh.h"
 #include "fix_neighlist_mesh.h"
+#include "kernels/near_spheres.hpp"
 #include "replaced.hpp"
 #include "triangles.hpp"
 #include "wall.hpp"
@@ -32,123 +31,26 @@ struct Lists : FixNeighlistMesh {
   static std::vector<LAMMPS_NS::TriangleNeighlist>& of(FixNeighlistMesh& mesh) { return mesh.*(&Lists::triangles); }
 };
 
-/// The spheres in the neighbour lists of a mesh, and shorter lists: those that can touch a triangle before a sphere or
-/// the mesh has moved by a part of the skin.
-class NearSpheres {
- public:
+/// The spheres near a mesh, from the last search for its neighbours.
+struct NearMesh {
+  NearSpheres spheres;
+  long search = -1;
+
   /// For a step.
   void update(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const LoopState& loops,
               double slack) {
-    const bool searched = search_ != loops.mesh_searches;
-    search_ = loops.mesh_searches;
-    if (searched) take(mesh, Lists::of(lists), atom.nlocal);
-    if (spheres_.empty()) return;
-    double moved = std::sqrt(moved_spheres(atom));
-    if (!searched && mesh.isMoving()) moved += std::sqrt(moved_corners(mesh));
-    if (searched || !(moved <= slack)) shorten(mesh, loops.kernels.spheres, slack);
-  }
-
-  /// contact(triangle, sphere) for all that can touch now, in the order of LIGGGHTS's lists.
-  template <class F>
-  void each(const SphereKernels& kernels, F contact) {
-    const NearTest test{now_.data(), reach, 0.0};
-    const int* candidates = near_.data();
-    for (const Near& near : triangles_) {
-      const int n = kernels.near_triangle(test, near.planes, candidates, near.count, found_.data());
-      for (int k = 0; k < n; ++k) contact(near.triangle, spheres_[found_[k]]);
-      candidates += near.count;
+    const int triangles = mesh.sizeLocal() + mesh.sizeGhost();
+    if (search != loops.mesh_searches) {
+      const auto& listed = Lists::of(lists);
+      spheres.take(
+          std::min(triangles, static_cast<int>(listed.size())), atom.nlocal,
+          [&](int t) -> const std::vector<int>& { return listed[t].contacts; },
+          [&](int t) { return Triangles::planes(mesh, t); });
+      search = loops.mesh_searches;
     }
+    const double* const corners = mesh.isMoving() && triangles > 0 ? Triangles::corners(mesh) : nullptr;
+    spheres.update(loops.kernels.spheres, atom.x[0], atom.radius, corners, triangles, slack);
   }
-
- private:
-  static inline const double reach = 1.0 + 1e-6;  // far above round-off
-
-  struct Near {
-    int triangle, count;
-    TrianglePlanes planes;
-  };
-
-  void take(TriMesh& mesh, const std::vector<LAMMPS_NS::TriangleNeighlist>& lists, int owned) {
-    std::vector<int>& place = place_;
-    place.assign(owned, -1);
-    spheres_.clear();
-    listed_.clear();
-    all_.clear();
-    triangles_.clear();
-    const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(lists.size()));
-    for (int t = 0; t < count; ++t) {
-      const std::size_t before = all_.size();
-      for (const int i : lists[t].contacts) {
-        if (i >= owned) continue;
-        if (place[i] < 0) {
-          place[i] = static_cast<int>(spheres_.size());
-          spheres_.push_back(i);
-        }
-        all_.push_back(place[i]);
-      }
-      if (all_.size() > before)
-        listed_.push_back({t, static_cast<int>(all_.size() - before), Triangles::planes(mesh, t)});
-    }
-    near_.resize(all_.size() + most_lanes);
-    found_.resize(all_.size() + most_lanes);
-    now_.resize(4 * spheres_.size());
-    before_.assign(now_.size(), 0.0);
-  }
-
-  void shorten(TriMesh& mesh, const SphereKernels& kernels, double slack) {
-    before_ = now_;
-    if (mesh.isMoving()) {
-      const double* const corners = Triangles::corners(mesh);
-      corners_.assign(corners, corners + 9 * (mesh.sizeLocal() + mesh.sizeGhost()));
-    }
-    triangles_.clear();
-    const NearTest test{now_.data(), reach, slack};
-    int *candidates = all_.data(), *near = near_.data();
-    for (const Near& listed : listed_) {
-      const int n = kernels.near_triangle(test, listed.planes, candidates, listed.count, near);
-      if (n > 0) triangles_.push_back({listed.triangle, n, listed.planes});
-      candidates += listed.count;
-      near += n;
-    }
-  }
-
-  /// The largest square of a way since the lists were made; infinite if a radius has changed.
-  double moved_spheres(const LAMMPS_NS::Atom& atom) {
-    double most = 0.0;
-    double* now = now_.data();
-    const double* before = before_.data();
-    for (const int i : spheres_) {
-      for (int k = 0; k < 3; ++k) now[k] = atom.x[i][k];
-      now[3] = atom.radius[i];
-      most = std::max(most, square_of_way(now, before));
-      if (now[3] != before[3]) most = std::numeric_limits<double>::infinity();
-      now += 4;
-      before += 4;
-    }
-    return most;
-  }
-
-  double moved_corners(TriMesh& mesh) const {
-    double most = 0.0;
-    const double* const now = Triangles::corners(mesh);
-    for (std::size_t k = 0; k < corners_.size(); k += 3)
-      most = std::max(most, square_of_way(now + k, corners_.data() + k));
-    return most;
-  }
-
-  static double square_of_way(const double* a, const double* b) {
-    const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
-    return dx * dx + dy * dy + dz * dz;
-  }
-
-  long search_ = -1;                  // of which the lists are
-  std::vector<int> spheres_;          // each once
-  std::vector<int> place_;            // of a sphere in spheres_
-  std::vector<double> now_, before_;  // rows of position and radius: in this step, and when the short lists were made
-  std::vector<double> corners_;       // then, of a mesh that moves
-  std::vector<Near> listed_, triangles_;
-  std::vector<int> all_, near_;  // places in spheres_: all lists one after the other, and the short ones
-  std::vector<int> found_;
 };
 
 /// The spheres in contact with a mesh, once per contact: in the last step of our loop, and in the step before.
@@ -215,7 +117,7 @@ struct Contacts : FixContactHistoryMesh {
 }  // namespace
 
 struct MeshState {
-  NearSpheres near;
+  NearMesh near;
   Touching touching;
 };
 
@@ -265,9 +167,9 @@ namespace loop = epdem::liggghts::loop;
     double v_wall[3] = {}, delta[3], weight[3];
     contact.mesh = &mesh;
     contact.fix_mesh = &fix;
-    loop::NearSpheres& near = kept[m]->near;
+    loop::NearMesh& near = kept[m]->near;
     near.update(mesh, *fix.meshNeighlist(), *atom, *loops, neighbor->skin / 4.0);
-    near.each(loops->kernels.spheres, [&](int triangle, int i) {
+    near.spheres.each(loops->kernels.spheres, [&](int triangle, int i) {
       int side;
       contact.i = i;
       contact.radi = atom->radius[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What our loops over pairs and walls take from a contact model: its parts, settings and properties.
+// Plan of our loops over pairs and walls from a contact model: its parts, settings and properties.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +25,11 @@ class Planned {
     plan_.settings.cohesion = std::max(0, Cohesions::place(ids_.cohesion));
     plan_.adds_friction = adds_friction(ids_);
     plan_.rolls = has_history(Rollings{}, plan_.settings.rolling);
-    plan_.root = model_.normal().root_slot();
     plan_.last_step = model_.normal().history_size();
-    if (wall && plan_.root >= 0 && !missing_) missing_ = "contacts with adhesion";
+    if (wall && model_.normal().gap().root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
-  /// What our loop does not include, by models and settings; nullptr: nothing.
+  /// Model or setting that our loop does not include; nullptr: none.
   const char* missing() const {
     const char* const found = missing_ ? missing_ : model_.loop_settings().missing();
     return !found && generic_ ? "EPDEM_LOOP = generic" : found;
@@ -45,6 +44,7 @@ class Planned {
     plan_.tally = normal.tally();
     plan_.strain = normal.strain();
     plan_.growth = normal.growth();
+    plan_.gap = normal.gap();
     const Kernels& kernels = state_of(lmp_).kernels;
     plan_.spheres = &kernels.spheres;
     plan_.kernel = plan_.growth ? kernels.grown[normal.place()][plan_.friction][wall_][plan_.tally != nullptr]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What our loops keep from call to call of LIGGGHTS.
+// State of our loops between calls of LIGGGHTS.
 #pragma once
 
 #include <vector>

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <limits>
 
 #include "../law_model.hpp"
 #include "../simulation.hpp"
@@ -12,6 +13,10 @@
 namespace epdem::liggghts {
 
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp) { return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag; }
+
+// No law there holds bodies across a gap.
+double smallest_radius(LAMMPS_NS::LAMMPS*) { return std::numeric_limits<double>::infinity(); }
+void register_contact_distance(LAMMPS_NS::LAMMPS*, double) {}
 
 namespace pfm {
 
@@ -69,7 +74,7 @@ std::string names() {
   return all;
 }
 
-/// What the loops of LIGGGHTS-PFM call: a law with its surface, tangential and rolling models.
+/// Contact model of the loops of LIGGGHTS-PFM: a law with its surface, tangential and rolling models.
 template <class Law, bool wall, int tangential, int rolling>
 class Model {
  public:

@@ -11,7 +11,7 @@ template <int nodes>
 struct PartialSlip {
   static constexpr const char* name = nodes == 3 ? "ep/partial_slip" : "ep/partial_slip_2";
   static constexpr int id = nodes == 3 ? 40 : 41, even_values = 1;
-  static constexpr bool of_liggghts = false, books_work = true;
+  static constexpr bool of_liggghts = false, adds_work = true;
   template <class T>
   using History = SlipState<nodes, T>;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a friction model reads of a contact. A model is a header beside this one and a line in sub_models.hpp:
+// Input of a friction model. A model is a header beside this one and a line in sub_models.hpp:
 //   name, id          of LIGGGHTS's tangential_model; restart files keep the id
 //   of_liggghts       LIGGGHTS has a class of the model
-//   books_work        `force` gives the work of friction to the observer
+//   adds_work        `force` gives the work of friction to the observer
 //   History<T>        values of a contact, all of type T; they change their sign when the bodies change places
 //   even_values       the number of values at the end of History that keep their sign
 //   force<flattens>(sliding, history, observer)
@@ -62,7 +62,7 @@ EPDEM_INLINE bool near_limit(const T& square, const T& limit) noexcept {
 struct NoFriction {
   static constexpr const char* name = "off";
   static constexpr int id = 0, even_values = 0;
-  static constexpr bool of_liggghts = true, books_work = false;
+  static constexpr bool of_liggghts = true, adds_work = false;
   template <class T>
   struct History {};
   template <bool flattens, class T, class Observer>

@@ -9,7 +9,7 @@ namespace epdem {
 struct SlidingDashpot {
   static constexpr const char* name = "no_history";
   static constexpr int id = 1, even_values = 0;
-  static constexpr bool of_liggghts = true, books_work = false;
+  static constexpr bool of_liggghts = true, adds_work = false;
   template <class T>
   struct History {};
 

@@ -9,7 +9,7 @@ namespace epdem {
 struct SlidingSpring {
   static constexpr const char* name = "history";
   static constexpr int id = 2, even_values = 0;
-  static constexpr bool of_liggghts = true, books_work = false;
+  static constexpr bool of_liggghts = true, adds_work = false;
   template <class T>
   struct History {
     Vec<T> stretch;  // [m]

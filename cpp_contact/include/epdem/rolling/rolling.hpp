@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a model of rolling friction reads of a contact. A model is a header beside this one and a line in
+// Input of a model of rolling friction. A model is a header beside this one and a line in
 // sub_models.hpp:
 //   name, id        of LIGGGHTS's rolling_friction; restart files keep the id
 //   of_liggghts     LIGGGHTS has a class of the same model
