@@ -156,6 +156,26 @@ struct RollingHistory {
   static constexpr int row = first > 0;
 };
 
+/// A contact that grows, whose values after the step are written before friction: they take no registers there.
+template <bool wall>
+struct StoredGrowth : Growing<wall, Lanes> {
+  Block* block;
+  int k, at;  // the first lane; the first value in a history
+
+  EPDEM_INLINE void keep() const {
+    Block& b = *block;
+    write<growth_values>(b.history + k, reinterpret_cast<const Lanes*>(&this->state), at);
+    const Dents<Lanes>& d = this->dents;
+    store(b.cover_i.a + k, d.cover_i);
+    store(b.volume_i.a + k, d.volume_i);
+    store(b.dented_area.a + k, d.area);
+    if constexpr (!wall) {
+      store(b.cover_j.a + k, d.cover_j);
+      store(b.volume_j.a + k, d.volume_j);
+    }
+  }
+};
+
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
 /// walls), friction, rolling friction, with compaction the values of GrowthState.
 /// Without `tallies` no step computes energies or repeats the last step.
@@ -205,7 +225,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
     }
 
     Lanes value[values + grown_values ? values + grown_values : 1] = {};
-    using Growth = std::conditional_t<grows, Growing<wall, Lanes>, NoGrowth>;
+    using Growth = std::conditional_t<grows, StoredGrowth<wall>, NoGrowth>;
     ContactHistory<Law, Friction, RollingHistory<rolling, !wall && values == 0>, Growth> history;
     history.rolling = {&b, &pass, k};
     if constexpr (values > 0) {
@@ -222,6 +242,9 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
       copy<friction_values>(value + sliding, &history.friction);
     }
     if constexpr (grows) {
+      history.growth.block = &b;
+      history.growth.k = k;
+      history.growth.at = growth_at;
       history.growth.radius_i = c.radius_i;
       history.growth.radius_j = c.radius_j;
       history.growth.curvature_i = 1.0 / c.radius_i;
@@ -242,18 +265,6 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
       copy<friction_values>(&history.friction, value + sliding);
       if constexpr (!wall) value[last_step] = constant<Lanes>(pass.now);
       write<values>(b.history + k, value);
-    }
-    if constexpr (grows) {
-      copy<grown_values>(&history.growth.state, value + values);
-      write<grown_values>(b.history + k, value + values, growth_at);
-      const Dents<Lanes>& d = history.growth.dents;
-      store(b.cover_i.a + k, d.cover_i);
-      store(b.volume_i.a + k, d.volume_i);
-      store(b.dented_area.a + k, d.area);
-      if constexpr (!wall) {
-        store(b.cover_j.a + k, d.cover_j);
-        store(b.volume_j.a + k, d.volume_j);
-      }
     }
     put(b.force, k, loads.force);
     put(b.torque_i, k, loads.torque_i);

@@ -81,6 +81,7 @@ inline void each_contact(const SphereKernels& kernels, PairSearch search, Block&
   int n = 0;
   while (search.tested < search.count) {
     const int last = n + kernels.next_near_pairs(search, b.i + n, b.j + n, place + n);
+    while (n < last && place[n] >= 0) ++n;  // most overlap, and stay where they are
     for (int k = n; k < last; ++k) {
       const int i = b.i[k], j = b.j[k];
       const bool overlaps = place[k] >= 0;

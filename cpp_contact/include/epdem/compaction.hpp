@@ -90,6 +90,9 @@ struct Growing {
   BodySums<T> i, j;
   GrowthState<T> state;  // before the step, then after it
   Dents<T> dents;        // after the step
+
+  /// A host may write state and dents here, as soon as they are known.
+  void keep() const noexcept {}
 };
 
 /// The sums of one body of a host, which stores those of all side by side; null: without compaction.
@@ -148,7 +151,7 @@ EPDEM_INLINE Dents<T> dents_of(const Growing<wall, T>& c, T strain_i, T residual
   }
 }
 
-/// gamma of a contact of this own area [m^2] in the sums, where it is above 0.
+/// gamma of a contact of this own area [m^2] in the sums, where it is above 0; without its limit 1.
 template <bool wall, class T>
 EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies, T own) noexcept {
   const auto lost = [](T others, T curvature) {  // of 1 by the constriction
@@ -163,7 +166,7 @@ EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies,
     gamma = gamma - (1.0 - bodies.compliance_i) * lost(others_j, c.curvature_j);
     bulk = bulk + bodies.bulk_j * others_j * c.curvature_j;
   }
-  return max(constant<T>(least_screening), min(constant<T>(1.0), gamma + bulk / sqrt(own)));
+  return max(constant<T>(least_screening), gamma + bulk / sqrt(own));
 }
 
 }  // namespace detail
@@ -225,22 +228,22 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   const T soft = (1.0 - gamma) * m;
   s.softness = 1.0 - soft;
 
-  // a stored peak of another overlap is not plausible, and the step computes a new one
   s.before = before;
   s.before.delta_max = s.reached + v.extrapolated;
-  s.before.point.force = select(known & (v.extrapolated == c.state.added), before.point.force, zero);
-  s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap);
+  const auto kept = [&](auto falls)
+                        __attribute__((always_inline)) { return falls & known & (v.extrapolated == c.state.added); };
+  s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap, kept);
 
   const Point<T>& peak = s.step.after.point;
   const auto dented = m > 0.0, parts = !(s.overlap > 0.0);
-  const T recovered = recovered_overlap(law.E_star, peak);
-  const T residual = max(zero, s.delta_max) - s.softness * recovered;
+  const Recovery<T> back = recovery(law.E_star, peak);
+  const T residual = max(zero, s.delta_max) - s.softness * back.overlap;
   const T area = select(dented, m * (peak.radius * peak.radius), zero);
   c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area);
   if (!repeats) {
     const T own =
         detail::grown(c, growth(c.dents.cover_i, c.dents.volume_i), growth(c.dents.cover_j, c.dents.volume_j));
-    const T unstored = select(dented, soft * recovered_work(law.E_star, peak), zero);
+    const T unstored = select(dented, soft * back.work, zero);
     const T before_force = select(c.state.area > 0.0, before.point.force, peak.force);
     const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
     c.state = {v.now, v.extrapolated, c.state.shift + shift, raw, gamma, own, area, unstored};

@@ -138,6 +138,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
       const auto peak = before.point;
       return grown_energies(law, R_star, peak, copy, overlap, closing);
     });
+    growth.keep();
   }
   if constexpr (adheres<Law>)
     if (repeats) now.step.force = now.step.force + before.jump;

@@ -199,6 +199,28 @@ template <class T>
 EPDEM_INLINE T max(T a, T b) noexcept {
   return select(a < b, b, a);
 }
+#if !defined EPDEM_DEVICE && defined __SSE2__
+// one instruction, which GCC does not choose because of -0.0 and NaN: where b is not the smaller or larger one, it
+// gives a
+EPDEM_INLINE Lanes min(Lanes a, Lanes b) noexcept {
+#if defined __AVX512F__
+  return _mm512_maskz_min_pd(0xff, b, a);
+#elif defined __AVX__
+  return _mm256_min_pd(b, a);
+#else
+  return _mm_min_pd(b, a);
+#endif
+}
+EPDEM_INLINE Lanes max(Lanes a, Lanes b) noexcept {
+#if defined __AVX512F__
+  return _mm512_maskz_max_pd(0xff, b, a);
+#elif defined __AVX__
+  return _mm256_max_pd(b, a);
+#else
+  return _mm_max_pd(b, a);
+#endif
+}
+#endif
 
 /// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.
 template <class M, class T>

@@ -65,12 +65,14 @@ inline auto plausible(const Point<T>& p) noexcept {
          (p.flatness <= 1.0);
 }
 
-/// As `step`, with another modulus [Pa] than E* below the largest overlap.
-template <class Law>
+/// As `step`, with another modulus [Pa] than E* below the largest overlap; kept: of the contacts below it those whose
+/// stored peak belongs to it.
+template <class Law, class Kept>
 inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law> R_star, const State<Law>& before,
-                                 Number<Law> delta) noexcept {
+                                 Number<Law> delta, Kept kept) noexcept {
   using T = Number<Law>;
   (void)modulus;
+  (void)kept;
   const auto touches = delta > 0.0;
   if (!any(touches)) return {T{}, T{}, before};
   Point<T> now{};
@@ -83,20 +85,22 @@ inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law
     const auto falls = (delta < before.delta_max) & (before.delta_max < no_overlap);
     const T delta_max = select(falls, before.delta_max, delta);
     const auto elastic = delta_max <= law.elastic_overlap(R_star);
-    if (any(elastic)) now = hertz_point(law.E_star, R_star, delta);
     if (any(!elastic)) {
       Point<T> peak;
       if constexpr (stores_peak<Law>) {
         peak = detail::stored_peak(before, R_star);
-        const auto unknown = !(elastic | (falls & plausible(peak)));
+        auto known = kept(falls);
+        if (any(known)) known = known & plausible(peak);
+        const auto unknown = !(elastic | known);
         if (any(unknown)) peak = select(unknown, law.load(R_star, only(unknown, delta_max)), peak);
         detail::store_peak(after, touches & unknown, peak);
       } else {
         peak = law.load(R_star, delta_max);
       }
       if (any(falls)) peak = select(falls, unload<Law::flattens>(modulus, peak, delta_max, delta), peak);
-      now = select(elastic, now, peak);
+      now = peak;
     }
+    if (any(elastic)) now = select(elastic, hertz_point(law.E_star, R_star, delta), now);
     after.delta_max = select(touches, delta_max, before.delta_max);
   }
   return {select(touches, now.force, T{}), select(touches, now.radius, T{}), after};
@@ -106,7 +110,7 @@ inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law
 /// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
 template <class Law>
 inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta) noexcept {
-  return step_of_modulus(law, law.E_star, R_star, before, delta);
+  return step_of_modulus(law, law.E_star, R_star, before, delta, [](auto falls) { return falls; });
 }
 
 /// The same with a closing speed at the half step times the time step [m], which only laws with adhesion ask for.

@@ -58,18 +58,28 @@ inline Point<T> unload(T E_star, const Point<T>& peak, T delta_max, T delta) noe
   }
 }
 
-/// Overlap given back on full unloading [m]: delta_e = (A + B) F_max/(E* a_max).
+/// What full unloading gives back.
 template <class T>
-inline T recovered_overlap(T E_star, const Point<T>& peak) noexcept {
-  return (0.75 * (1.0 - peak.flatness) + 2.0 / pi * peak.flatness) * peak.force / (E_star * peak.radius);
+struct Recovery {
+  T overlap;  // delta_e = (A + B) F_max/(E* a_max) [m]
+  T work;     // kappa F_max^2/(E* a_max) [J], kappa = 0.3 (1-tau)^2 + 0.5625 tau (1-tau) + 8/(3 pi^2) tau^2
+};
+
+template <class T>
+EPDEM_INLINE Recovery<T> recovery(T E_star, const Point<T>& peak) noexcept {
+  const T t = peak.flatness, way = peak.force / (E_star * peak.radius);
+  return {(0.75 + (2.0 / pi - 0.75) * t) * way,
+          (0.3 + (-0.0375 + (8.0 / (3.0 * pi * pi) - 0.2625) * t) * t) * peak.force * way};
 }
 
-/// Energy given back on full unloading [J]: kappa F_max^2/(a_max E*).
+template <class T>
+inline T recovered_overlap(T E_star, const Point<T>& peak) noexcept {
+  return recovery(E_star, peak).overlap;
+}
+
 template <class T>
 inline T recovered_work(T E_star, const Point<T>& peak) noexcept {
-  const T t = peak.flatness, r = 1.0 - t;
-  const T kappa = 0.3 * r * r + 0.5625 * t * r + 8.0 / (3.0 * pi * pi) * t * t;
-  return kappa * peak.force * peak.force / (peak.radius * E_star);
+  return recovery(E_star, peak).work;
 }
 
 /// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from
