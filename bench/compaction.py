@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pressure of random packings under compaction: ep/cavity in LIGGGHTS beside LAMMPS's mdr with psi_b = 0.
+"""Pressure of random packings under compaction in LAMMPS: cavity of the plugin beside mdr with psi_b = 0.
 
 .venv/bin/python bench/compaction.py [seed ...]            # E/Y = 120, nu = 0.34; with --soft 30 and 0.2
 .venv/bin/python bench/compaction.py --numpy [seed ...]  # beside numpy, with the sums of the same step
@@ -19,8 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "engines"))
 
-from plugin_compaction import HEAD, NU, E, Y, data
-from plugin_decks import good
+from plugin_compaction import NU, E, Y
 from test_plugin_compaction import falls, walks
 
 from epdem.engines.lammps import launcher
@@ -77,70 +76,14 @@ def _density(start, die, way):
     return len(radius) * 4 * np.pi / 3 / (now * edge**2 if die else now**3)
 
 
-def press(folder, start, settings, *, die, softens=True, elastic=(E / Y, NU), dt=0.02):
-    """(relative density, pressure over Y) in LIGGGHTS: mean force on the moving plates over their area."""
-    x, radius, edge = start
-    _, axes, seconds = _course(start, die)
-    half, steps = edge / 2, int(seconds / dt)
-    text = HEAD % {"settings": settings, "head": "hard_particles yes", "atoms": "read_data spheres.data"}
-    modulus = elastic[0] * Y
-    for name, old, of_both in (
-        ("youngsModulus", E, (modulus, RIGID * modulus)),
-        ("poissonsRatio", NU, (elastic[1], elastic[1])),
-        ("yieldStress", Y, (Y, RIGID * Y)),
-        ("finiteStrain", 0.82, (0.82, 0.82)),
-    ):
-        line = f"{name} peratomtype {old!r}"
-        assert line in text
-        text = text.replace(line, f"{name} peratomtype {of_both[0]!r} {of_both[1]!r}")
-    if not softens:
-        text = re.sub("fix p2 all property/global finiteStrain.*\n", "", text)
-    spheres = data(x, radius, np.zeros_like(x), Y, half=edge).replace("1 atom types", "2 atom types")
-    files = {"spheres.data": spheres}
-    meshes = []
-    for a, axis in enumerate("xyz"):
-        for sign in (-1, 1):
-            name = f"{axis}{sign + 1}"
-            files[f"{name}.stl"] = _plate(a, sign * half, 0.75 * edge)
-            text += f"fix {name} all mesh/surface/stress file {name}.stl type 2\n"
-            meshes.append(name)
-            if axis in axes:
-                v = [0.0, 0.0, 0.0]
-                v[a] = -sign * SPEED[die]
-                text += f"fix m{name} all move/mesh mesh {name} linear {v[0]!r} {v[1]!r} {v[2]!r}\n"
-    moving = [m for m in meshes if m[0] in axes]
-    forces_of = " ".join(f"f_{m}[{1 + 'xyz'.index(m[0])}]" for m in moving)
-    text += (
-        f"fix walls all wall/gran model ep/cavity tangential off mesh n_meshes 6 meshes {' '.join(meshes)} {settings}\n"
-        f"fix move all nve/sphere\nfix drag all viscous {DRAG * Y * 4 * np.pi / 3!r}\ntimestep {dt!r}\n"
-        f"fix mean all ave/time 1 40 40 {forces_of} file loads.txt\nthermo 100000\nrun {steps}\n"
-    )
-    good(folder, text, files=files, timeout=900)
-    rows = np.loadtxt(folder / "loads.txt")
-    way = SPEED[die] * dt * (rows[:, 0] - 20)
-    side = edge if die else edge - 2 * way
-    return _density(start, die, way), np.abs(rows[:, 1:]).mean(axis=1) / side**2 / Y
+def _run(folder, start, style, walls, *, die, dt, more):
+    """Pressed spheres in LAMMPS: a pair style, the words of its walls over a region, more lines before the run.
 
-
-def _plate(axis, place, half):
-    """STL text of a square plate normal to an axis."""
-    corners = []
-    for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-        corner = [a * half, b * half]
-        corner.insert(axis, place)
-        corners.append(" ".join(map(repr, map(float, corner))))
-    lines = ["solid plate"]
-    for three in ((0, 1, 2), (0, 2, 3)):
-        lines += ["facet normal 0 0 1", "outer loop", *(f"vertex {corners[k]}" for k in three), "endloop", "endfacet"]
-    return "\n".join([*lines, "endsolid plate", ""])
-
-
-def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
-    """The same of LAMMPS's mdr with psi_b = 0: pressure (die: axial stress) from the stresses of the spheres."""
+    Walls are planes of which x0, x2, ... are the lower and upper ones of the axes.
+    """
     x, radius, edge = start
     _, axes, seconds = _course(start, die)
     folder.mkdir(parents=True, exist_ok=True)
-    law = f"mdr {elastic[0]!r} {elastic[1]!r} 1.0 0 0.0 0 tangential linear_history 0.0 0.0 0.0 damping mdr 1"
     rows = [
         f"{k + 1} 1 {2 * float(r)!r} 1.0 {' '.join(map(repr, map(float, p)))}"
         for k, (r, p) in enumerate(zip(radius, x, strict=True))
@@ -149,13 +92,8 @@ def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
     atoms = ["x", "", f"{len(radius)} atoms", "1 atom types", "", *box, "", "Atoms", "", *rows, ""]
     (folder / "spheres.data").write_text("\n".join(atoms))
     lines = ["units si", "atom_style sphere", "atom_modify map array", "boundary f f f", "newton off"]
-    lines += [
-        "comm_modify vel yes",
-        "read_data spheres.data",
-        "neighbor 1.0 bin",
-        "neigh_modify every 10 delay 0 check no",
-    ]
-    lines += ["pair_style granular", f"pair_coeff * * {law}"]
+    lines += ["comm_modify vel yes", "read_data spheres.data", "neighbor 1.0 bin"]
+    lines += ["neigh_modify every 10 delay 0 check no", *style]
     lines += [f"variable in equal step*{dt * SPEED[die]!r}", "variable out equal -v_in"]
     for a, axis in enumerate("xyz"):
         for sign in (1, -1):
@@ -164,20 +102,46 @@ def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
             plane = " ".join(map(repr, [*map(float, point), *map(float, normal)]))
             move = f" move {' '.join(moves)}" if axis in axes else ""
             lines.append(f"region r{axis}{sign + 1} plane {plane}{move}")
-            lines.append(f"fix w{axis}{sign + 1} all wall/gran/region granular {law} region r{axis}{sign + 1} contacts")
-    lines += ["fix move all nve/sphere"]
-    lines += [f"variable f{c} atom -{DRAG}*mass*v{c}" for c in "xyz"]
-    lines += ["fix drag all addforce v_fx v_fy v_fz", f"timestep {dt!r}", "run 0"]
-    lines += ["compute s all property/atom d_sigmaxx d_sigmayy d_sigmazz d_Velas"]
+            lines.append(f"fix w{axis}{sign + 1} all {walls.format(region=f'r{axis}{sign + 1}')}")
+    lines += ["fix move all nve/sphere", *more, f"timestep {dt!r}", f"run {int(seconds / dt)}", ""]
+    (folder / "in.press").write_text("\n".join(lines))
+    launcher.run("in.press", folder, log="log.press", seconds=1800)
+
+
+def press(folder, start, settings, *, die, softens=True, elastic=(E / Y, NU), dt=0.02):
+    """(relative density, pressure over Y) of ep/cavity: mean force on the moving walls over their area."""
+    _, _, edge = start
+    _, axes, _ = _course(start, die)
+
+    def law(factor):
+        strain = " 0.82" if softens else ""
+        return f"cavity {factor * elastic[0]!r} {elastic[1]!r} {factor!r} 1.6 2.8{strain} {settings}"
+
+    forces = " ".join(f"f_w{axis}{side}[{1 + 'xyz'.index(axis)}]" for axis in axes for side in (0, 2))
+    more = [f"fix drag all viscous {DRAG * 4 * np.pi / 3!r}", f"fix mean all ave/time 1 40 40 {forces} file loads.txt"]
+    style = ["pair_style ep", f"pair_coeff * * {law(1.0)}"]
+    _run(folder, start, style, f"wall/ep/region {{region}} {law(RIGID)}", die=die, dt=dt, more=[*more, "thermo 100000"])
+    rows = np.loadtxt(folder / "loads.txt")
+    way = SPEED[die] * dt * (rows[:, 0] - 20)
+    side = edge if die else edge - 2 * way
+    return _density(start, die, way), np.abs(rows[:, 1:]).mean(axis=1) / side**2
+
+
+def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
+    """The same of LAMMPS's mdr with psi_b = 0: pressure (die: axial stress) from the stresses of the spheres."""
+    law = f"mdr {elastic[0]!r} {elastic[1]!r} 1.0 0 0.0 0 tangential linear_history 0.0 0.0 0.0 damping mdr 1"
+    more = [f"variable f{c} atom -{DRAG}*mass*v{c}" for c in "xyz"]
+    more += ["fix drag all addforce v_fx v_fy v_fz", f"timestep {dt!r}", "run 0"]
+    more += ["compute s all property/atom d_sigmaxx d_sigmayy d_sigmazz d_Velas"]
     trace = "3*c_s[3]" if die else "(c_s[1]+c_s[2]+c_s[3])"
-    lines += [f"variable t atom {trace}*c_s[4]", "compute sum all reduce sum v_t", "thermo_style custom step c_sum"]
-    lines += ["thermo 80", "thermo_modify format float %.10g lost warn", f"run {int(seconds / dt)}"]
-    (folder / "in.mdr").write_text("\n".join([*lines, ""]))
-    launcher.run("in.mdr", folder, log="log.mdr", seconds=1800)
-    found = re.findall(r"^ +(\d+) +(-?[\d.]+(?:e[+-]\d+)?)$", (folder / "log.mdr").read_text(), re.M)
+    more += [f"variable t atom {trace}*c_s[4]", "compute sum all reduce sum v_t", "thermo_style custom step c_sum"]
+    more += ["thermo 80", "thermo_modify format float %.10g lost warn"]
+    style = ["pair_style granular", f"pair_coeff * * {law}"]
+    _run(folder, start, style, f"wall/gran/region granular {law} region {{region}} contacts", die=die, dt=dt, more=more)
+    found = re.findall(r"^ +(\d+) +(-?[\d.]+(?:e[+-]\d+)?)$", (folder / "log.press").read_text(), re.M)
     step, total = np.array(found, float).T
     way = SPEED[die] * dt * step
-    volume = len(radius) * 4 * np.pi / 3
+    volume = len(start[1]) * 4 * np.pi / 3
     density = _density(start, die, way)
     return density[1:], -total[1:] / (3 * volume / density[1:])
 
@@ -239,14 +203,14 @@ def beside_mdr(start, die, elastic) -> None:
 
 
 def beside_numpy(start, die) -> None:
-    """Print deviations of LIGGGHTS from numpy in per cent."""
+    """Print deviations of LAMMPS from numpy in per cent."""
     density, pressure = press_numpy(start, die=die)
     reference = np.interp(DENSITIES, density, pressure)
     print("numpy P/Y".ljust(38), *(f"{p:6.3f}" for p in reference))
     with tempfile.TemporaryDirectory() as folder:
         density, pressure = press(Path(folder), start, "compaction on", die=die)
     error = 100 * (np.interp(DENSITIES, density, pressure) / reference - 1)
-    print("  LIGGGHTS".ljust(38), " ".join(f"{e:+6.2f}" for e in error), "%", flush=True)
+    print("  LAMMPS".ljust(38), " ".join(f"{e:+6.2f}" for e in error), "%", flush=True)
 
 
 def main() -> None:
