@@ -5,7 +5,9 @@ import json
 
 import numpy as np
 import pytest
-from lammps_walks import falls, one_body, paths, two_bodies
+from lammps_decks import needs_lammps
+from lammps_walks import FLIGHT, falls, fly, nine_spheres, one_body, paths, two_bodies
+from plugin_compaction import NU, E, Y
 from test_lammps_passive import BEDS, HARD, SOFT, SOFTEST
 from yade_native import yade
 
@@ -103,3 +105,47 @@ def test_walks_create_no_energy(name, tmp_path):
         found.append((falls(work, elastic, 10).max(), np.abs(work - elastic - lost).max() / work.max()))
     assert found[0][0] < 1e-4 and found[1][0] < 2e-5
     assert found[0][1] < 4e-4 and found[1][1] < 0.35 * found[0][1]
+
+
+FREE = """
+job = np.load("job.npz")
+E, nu, Y, strain = job["law"].tolist()
+O.materials.append(EpMat(young=E, poisson=nu, density=Y, frictionAngle=0, yieldStress=Y, finiteStrain=strain))
+for x, r, v in zip(job["x"], job["radius"], job["v"]):
+    b = sphere(x, r)
+    b.state.vel = v
+    O.bodies.append(b)
+frames = []
+
+def record():
+    frames.append([b.state.pos for b in O.bodies])
+
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25)], verletDist=0.05),
+    EpGrowth(),
+    InteractionLoop([Ig2_Sphere_Sphere_ScGeomGrown()], [Ip2_EpMat_EpMat_EpPhys()],
+                    [Law2_ScGeom_EpPhys_Cavity(compaction=True)]),
+    PyRunner(command="record()", iterPeriod=1, initRun=True),
+    NewtonIntegrator(damping=0),
+]
+O.dt = float(job["dt"])
+O.run(int(job["steps"]) + 1, True)
+np.savez("found.npz", x=frames)
+"""
+
+
+@needs_lammps
+def test_nine_free_spheres_fly_alike_in_lammps(tmp_path):
+    """Places at all steps. YADE has the velocities of half steps: without forces at the start those are the same."""
+    x, radius, v = nine_spheres()
+    steps = 1500
+    lammps, *_ = fly(tmp_path / "lammps", [(E, NU, Y)], steps, density=Y)
+    folder = tmp_path / "yade"
+    folder.mkdir()
+    law = [E, NU, Y, FINITE_STRAIN]
+    np.savez(folder / "job.npz", x=x, radius=radius, v=v, law=law, dt=FLIGHT / steps, steps=steps)
+    done = yade(FREE, folder)
+    assert done.returncode == 0, done.stderr[-2000:]
+    found = np.load(folder / "found.npz")["x"]
+    assert np.abs(found - lammps).max() < 1e-12 * np.abs(x).max()
