@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""delete_atoms between two runs of LIGGGHTS: numbers of spheres change, histories stay with their contacts."""
+"""Between two runs of LIGGGHTS numbers of spheres change, and lists: histories stay with their contacts."""
 
 import numpy as np
 import pytest
@@ -59,3 +59,9 @@ def test_ranks_give_partners_the_same_numbers(tmp_path):
     two = end(tmp_path / "two", BOTH + "delete_atoms group both\n", ranks=2)
     scale = np.abs(one).max(axis=0)
     assert len(one) == len(two) and (np.abs(two - one) / scale).max() <= 1e-9
+
+
+@pytest.mark.parametrize("between", ["neigh_modify one 500 page 200000", "neighbor 2e-4 nsq"])
+def test_new_lists_keep_histories(tmp_path, between):
+    kept, anew = end(tmp_path / "kept", ""), end(tmp_path / "anew", between + "\n")
+    assert np.abs(anew - kept).max() <= 1e-9 * np.abs(kept).max()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Around LIGGGHTS's delete_atoms: histories of pairs name partners by their numbers, which `compress yes` (the default)
-// gives anew. Histories follow here; in LIGGGHTS dents and springs go to other contacts.
+// Histories of pairs where LIGGGHTS gives them to other contacts or forgets them: delete_atoms gives numbers anew, by
+// which histories name their partners (`compress yes`, the default), and neighbour lists that hold them end between
+// runs.
 #include "delete_atoms.h"
 #include "fix_contact_history.h"
 #include "modify.h"
@@ -98,6 +99,16 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixContactHistory::pre_exchange() {
   static const auto original = loop::next<FixContactHistory*>("_ZN9LAMMPS_NS17FixContactHistory12pre_exchangeEv");
   if (*computeflag_ || !loop::deletes_atoms(lmp)) original(this);
+}
+
+/// Stores histories before LIGGGHTS deletes the lists that hold them: where the style or the pages of lists, or who
+/// asks for lists, are not those of the run before.
+[[gnu::visibility("default")]] void Neighbor::init() {
+  static const auto original = loop::next<Neighbor*>("_ZN9LAMMPS_NS8Neighbor4initEv");
+  if (epdem::liggghts::library_matches(lmp))
+    for (int k = 0; k < modify->n_fixes_style_strict("contacthistory"); ++k)
+      modify->find_fix_style_strict("contacthistory", k)->setup_pre_exchange();
+  original(this);
 }
 
 }  // namespace LAMMPS_NS
