@@ -140,3 +140,12 @@ def test_the_work_of_a_vibration_that_goes_on_with_another_step(tmp_path):
     balance = outcome.results.energy_balance
     assert outcome.passed, outcome.results.checks
     assert np.abs(balance["work"]).max() > 0.1 * balance["kinetic"].max() > 0
+
+
+@pytest.mark.parametrize(("own_step", "count"), [("4e-6 s", 2), ("7e-6 s", 3), ("2e-5 s", 2), ("5e-6 s", 8)])
+def test_contacts_are_listed_in_frames(own_step, count):
+    """A phase whose own time step changes the number of rows."""
+    phases = [{"name": "a", "duration": "6 ms", "time_step": own_step}, {"name": "b", "duration": "4 ms"}]
+    output = {"rows": 20, "particles": 4, "contacts": count}
+    p = plan(parse(parts(phase=phases) | {"numerics": {"time_step": "5e-6 s"}, "output": output}))
+    assert {*p.frame_steps(p.contacts)} <= {*p.frame_steps(p.frames)} and 0 < p.contacts < p.steps

@@ -415,6 +415,10 @@ def plan(case: SceneCase) -> ScenePlan:
     def interval(count: int, rows: int = max(rows, whole)) -> int:
         return 0 if count == 0 else every * max(1, rows // count)
 
+    frames = interval(out.particles)
+    contacts = interval(out.contacts or (out.particles if out.energy else 0))
+    if frames and contacts:  # of frames, in which the spheres are known
+        contacts = frames * max(1, contacts // frames)
     return ScenePlan(
         case=case,
         model=contact_model,
@@ -425,8 +429,8 @@ def plan(case: SceneCase) -> ScenePlan:
         phases=phases,
         every=every,
         sampling=next(d for d in range(max(1, every // SAMPLES), 0, -1) if every % d == 0),
-        frames=interval(out.particles),
-        contacts=interval(out.contacts or (out.particles if out.energy else 0)),
+        frames=frames,
+        contacts=contacts,
         pictures=interval(out.pictures),
         restarts=interval(out.restarts, whole),
     )
