@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Each target calls scripts and tools.
-.PHONY: setup demo trixie container lammps yade test faults packaging slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade versions fuzz valgrind reliability tutorials wheel deb release trees clean
+.PHONY: setup demo trixie container lammps yade test faults packaging slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade lock versions fuzz valgrind reliability tutorials wheel deb release trees clean
 
 setup:
 	@scripts/setup
@@ -91,6 +91,12 @@ sanitize-yade:
 
 sanitize: setup
 	.venv/bin/python scripts/sanitize
+
+# scripts/constraints.txt anew: the newest versions on PyPI of all packages, for Python 3.11 and later
+lock: setup
+	.venv/bin/python -m pip install -q --disable-pip-version-check uv
+	echo scikit-build-core | .venv/bin/uv pip compile -q --upgrade --universal --all-extras --no-annotate --python-version 3.11 \
+	  --custom-compile-command "make lock" pyproject.toml - -o scripts/constraints.txt
 
 # the oldest and the newest Python packages instead of those of scripts/constraints.txt
 versions: setup

@@ -202,10 +202,9 @@ def test_a_source_of_yade_of_another_version_is_refused(file, text, tmp_path):
 def test_every_dependency_has_one_version_in_the_lock_file():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    wanted = [*project["dependencies"], *extras["dev"], *extras["docs"]]
-    lines = (ROOT / "scripts/constraints.txt").read_text().splitlines()[1:]
-    locked = {re.sub("[-_.]+", "-", line.split("==")[0]).lower(): line.split("==")[1] for line in lines}
+    wanted = [*project["dependencies"], *(r for extra in extras.values() for r in extra)]
+    locked = dict(re.findall(r"^([\w.-]+)==([\d.]+)", (ROOT / "scripts/constraints.txt").read_text(), re.MULTILINE))
     for requirement in wanted:
         name, _, least = re.match(r"([\w-]+)(>=|==)([\d.]+)", requirement).groups()
-        version = locked[re.sub("[-_.]+", "-", name).lower()]
+        version = locked[re.sub("[-_.]+", "-", name).lower()]  # as uv writes names
         assert [int(n) for n in version.split(".")] >= [int(n) for n in least.split(".")], name

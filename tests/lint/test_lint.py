@@ -157,8 +157,6 @@ def test_both_recipes_of_the_image_have_the_same_steps():
 
 def test_all_files_state_one_version():
     places = {
-        "pyproject.toml": r'^version = "(.+)"',
-        "CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
         "cpp_contact/lammps/export/CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
         "python/epdem/base/__init__.py": r'^__version__ = "(.+)"',
         "CITATION.cff": r"^version: (.+)",

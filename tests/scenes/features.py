@@ -5,13 +5,18 @@ from copy import deepcopy
 from pathlib import Path
 
 from hypothesis import strategies as st
-from parts_cases import CASE, FLOOR, GLASS
+from parts_cases import CASE, FLOOR, GLASS, tetrahedron
+
+from epdem.engines.liggghts.scene_parts import stl_text
 
 DENSITY = {"glass": 2500.0, "steel": 7800.0, "rubber": 1100.0}
 RUBBER = {"young_modulus": "50 MPa", "poisson_ratio": 0.4, "density": "1100 kg/m^3", "yield_stress": "0.8 MPa"}
 REGION = {"x": ["-6.5 mm", "6.5 mm"], "y": ["-6.5 mm", "6.5 mm"], "z": ["2 mm", "30 mm"]}  # inside the tube
+UPRIGHT = {"diameter": "12 mm", "z": ["2 mm", "30 mm"], "center": ["0.5 mm", "0 mm"]}
+SLAB = {"y": ["-9 mm", "9 mm"], "z": ["-4 mm", "40 mm"]}
 SIEVE = "opening [mm],retained [%]\n2.4,0\n2.0,40\n1.6,60\n"
 TABLE = "x,y,z,radius,material\n0,0,0.034,0.001,steel\n0.004,0,0.034,0.001,glass\n"
+FALLING = "x,y,z,radius,vz\n0,0,0.034,0.001,-0.5\n"
 
 
 def plate(name, material, z, **keys):
@@ -21,21 +26,50 @@ def plate(name, material, z, **keys):
 
 LID = plate("lid", "rubber", 35.5)
 TUBE = {"name": "tube", "kind": "cylinder", "from": "-2 mm", "to": "32 mm", "diameter": "19.5 mm", "material": "steel"}
+TUBE |= {"angular_velocity": "30 rpm"}
 TURNING = {"name": "screen", "kind": "cone", "from": "-4 mm", "to": "-1 mm", "diameters": ["6 mm", "19 mm"]}
 TURNING |= {"material": "steel", "angular_velocity": "60 rpm"}
 GATE = {"name": "gate", "kind": "plane", "axis": "z", "at": "1 mm", "material": "rubber", "phases": ["first"]}
 BOX = {"name": "tray", "kind": "box", "x": ["-9.5 mm", "9.5 mm"], "y": ["-9.5 mm", "9.5 mm"], "z": ["-1 mm", "1 mm"]}
+DUCT = {"name": "duct", "kind": "cylinder", "axis": "x", "from": "-8 mm", "to": "8 mm", "diameter": "2 mm"}
+DUCT |= {"center": ["1 mm", "-3 mm"], "ends": ["to"], "material": "steel"}
+CONE = {"name": "cap", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": ["1 mm", "2 mm"]}
+CONE |= {"center": ["-1 mm", "-3 mm"], "ends": ["from"], "material": "glass"}
+FUNNEL = {"name": "funnel", "kind": "revolved", "profile": [["9.2 mm", "4 mm"], ["9.6 mm", "20 mm"]]}
+FUNNEL |= {"center": ["0.2 mm", "0 mm"], "material": "steel"}
+STONE = {"name": "stone", "kind": "stl", "file": "stone.stl", "scale": 1e-3, "closed": True, "material": "glass"}
+STONE |= {"position": ["-8.5 mm", "-8.5 mm", "-4.5 mm"], "rotate": {"axis": [0, 0, 1], "angle": "10 deg"}}
 WALLS = {
     "planes": [],
+    "planes across x and y": [
+        {"name": "left", "kind": "plane", "axis": "x", "at": "-9 mm", "material": "rubber"},
+        {"name": "front", "kind": "plane", "axis": "y", "at": "-9 mm", "material": "glass"},
+    ],
+    "plates across x and y": [
+        plate("left", "rubber", 10) | {"axis": "x", "center": ["-9 mm", "0 mm", "10 mm"]},
+        plate("front", "glass", 10) | {"axis": "y", "center": ["0 mm", "-9 mm", "10 mm"]},
+    ],
+    "duct": [DUCT | {"stress": True}],
+    "cap": [CONE | {"stress": True}],
+    "funnel": [FUNNEL | {"stress": True}],
+    "stone": [STONE | {"stress": True}],
     "plates of two worn materials": [
         plate("left", "steel", -1, wear="2 mm^2/N"),
         plate("right", "rubber", -2, wear="5e-6 m^2/N"),
     ],
     "plate with stress": [plate("tray", "rubber", -1, stress=True)],
-    "tube": [TUBE],
+    "tube that turns": [TUBE],
     "cone that turns": [TURNING],
     "gate": [GATE],
-    "open box": [BOX | {"open": ["+z"], "material": "glass"}],
+    "open box": [BOX | {"open": ["+z"], "material": "glass", "stress": True}],
+    "worn round walls": [
+        DUCT | {"wear": "5e-6 m^2/N"},
+        CONE | {"name": "cup", "center": ["-6 mm", "-3 mm"], "wear": "5e-6 m^2/N", "material": "steel"},
+    ],
+    "worn shapes": [
+        wall | {"wear": "5e-6 m^2/N", "material": "steel"}
+        for wall in (FUNNEL, STONE, BOX | {"open": ["+z", "-x", "+x", "-y", "+y"]})
+    ],
 }
 LAWS = {
     "hertz": {"name": "hertz"},
@@ -49,6 +83,11 @@ LAWS = {
     "thornton_ning": {"name": "thornton_ning", "work_of_adhesion": "0.02 J/m^2"},
 }
 PAIRS = [{"between": ["glass", "wall"], "friction": 0.7}, {"between": ["glass", "steel"], "friction": 0.1}]
+STRENGTHS = {
+    "yield stress": {"yield_stress": "0.05 MPa"},
+    "hardness": {"hardness": "0.14 MPa"},
+    "yield ratio": {"yield_ratio": 1e-4},
+}
 CONTACTS = {
     "no friction": {},
     "friction": {"friction": 0.4},
@@ -56,9 +95,20 @@ CONTACTS = {
     "friction of pairs": {"friction": 0.4, "pairs": PAIRS},
     "partial slip": {"friction": 0.4, "tangential": "partial_slip"},
     "rolling": {"friction": 0.4, "rolling": {"model": "epsd2", "coefficient": 0.05}},
+    "rolling cdt": {"friction": 0.4, "rolling": {"model": "cdt", "coefficient": 0.05}},
+    "rolling epsd": {"friction": 0.4, "rolling": {"model": "epsd", "coefficient": 0.05, "damping": 0.2}},
+    "partial slip 2": {"friction": 0.4, "tangential": "partial_slip_2"},
+    "tangential dashpot": {"friction": 0.4, "tangential": "history", "tangential_restitution": 0.6},
     "cohesion": {"cohesion": "1e3 J/m^3"},
 }
-DASHPOTS = {"no dashpot": None, "dashpot": {"restitution": 0.6}}
+DASHPOTS = {
+    "no dashpot": {},
+    "dashpot": {"viscous": {"restitution": 0.6}},
+    "dashpot of a pair": {
+        "viscous": {"restitution": 0.6},
+        "pairs": [{"between": ["glass", "glass"], "friction": 0.2, "restitution": 0.8}],
+    },
+}
 MIXTURES = {
     "one radius": [{"material": "glass", "radius": "1 mm"}],
     "two materials": [
@@ -69,7 +119,13 @@ MIXTURES = {
         {"material": "steel", "radius": "1.6 mm", "share": 0.02},
         {"material": "glass", "radius": "1 mm", "share": 0.98},
     ],
-    "range": [{"material": "glass", "radius": {"from": "0.7 mm", "to": "1.3 mm"}}],
+    "range": [{"material": "glass", "radius": {"from": "0.7 mm", "to": "1.3 mm", "classes": 4}}],
+    "normal": [
+        {
+            "material": "glass",
+            "radius": {"mean": "1 mm", "deviation": "0.2 mm", "from": "0.6 mm", "to": "1.4 mm", "classes": 4},
+        }
+    ],
     "log-normal": [
         {"material": "glass", "radius": {"median": "1 mm", "ratio": 1.3, "from": "0.5 mm", "to": "2 mm", "classes": 7}}
     ],
@@ -80,6 +136,8 @@ AMOUNTS = {
     "mass": {"mass": "0.9 g"},
     "fraction": {"fraction": 0.06},
     "poured": {"count": 60, "rate": "10 kHz"},
+    "thrown later": {"count": 60, "phase": "second", "velocity": ["0 m/s", "0.1 m/s", "-0.2 m/s"], "exact": True},
+    "cylinder": {"count": 60, "exact": False, "region": UPRIGHT},
 }
 BALL = {"name": "ball", "material": "rubber", "radius": "1.5 mm", "position": ["-4 mm", "0 mm", "33 mm"]}
 BODIES = {
@@ -88,16 +146,37 @@ BODIES = {
     "frozen body": {"body": [BALL | {"frozen": True}]},
     "late body": {"body": [BALL | {"phase": "second"}]},
     "table": {"fill": [{"name": "table", "file": "table.csv"}]},
+    "table of glass": {"fill": [{"name": "table", "file": "falling.csv", "material": "glass"}]},
+}
+ROWS = {
+    "none": [],
+    "rows of walls": [
+        {"name": "pressure", "wall": "lid", "force": "-z", "area": "3.2 cm^2", "title": "pressure on the lid"},
+        {"name": "moment", "wall": "lid", "torque": "+x", "title": "torque on the lid"},
+        {"name": "place", "wall": "lid", "position": "z", "title": "place of the lid"},
+    ],
+}
+NUMERICS = {
+    "time step": {"time_step": "5e-6 s"},
+    "lists": {"time_step": "5e-6 s", "skin": "0.7 mm", "sort_interval": 100, "seed": 3},
+    "ranks": {"time_step": "5e-6 s", "processors": "xy", "balance": 200},
+    "error": {"error": 0.1, "highest_speed": "1 m/s"},
 }
 FIRST, SECOND = {"name": "first", "duration": "6 ms"}, {"name": "second", "duration": "4 ms"}
 LINEAR = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
 VIBRATE = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "0.2 mm"], "frequency": "300 Hz"}
+TURN = {"wall": "lid", "kind": "rotate", "axis": [0, 0, 1], "origin": ["1 mm", "0 mm", "0 mm"], "rate": "60 rpm"}
 PRESS = {"wall": "lid", "kind": "press", "direction": [0, 0, -1], "force": "10 mN", "highest_speed": "0.1 m/s"}
 PHASES = {
     "rest": [{}, {}],
     "wall moves": [{}, {"move": [LINEAR]}],
     "wall vibrates": [{"move": [VIBRATE]}, {"move": [VIBRATE]}],
     "wall presses": [{}, {"move": [PRESS]}],
+    "wall turns": [{"move": [TURN]}, {}],
+    "wall turns, then moves": [{"move": [TURN]}, {"move": [LINEAR]}],
+    "until a way": [{"until": {"wall": "lid", "travel": "0.3 mm"}, "move": [LINEAR]}, {}],
+    "until a lower force": [{"until": {"wall": "lid", "force_below": "5 mN", "after": "1 ms"}}, {"move": [LINEAR]}],
+    "until few are left": [{"until": {"count": 30}}, {}],
     "until a force": [{"until": {"wall": "lid", "force": "5 mN"}, "move": [LINEAR]}, {}],
     "until rest": [{"until": {"kinetic_energy": "1 nJ"}}, {}],
     "own step": [{"time_step": "4e-6 s"}, {}],
@@ -111,22 +190,39 @@ OUTPUTS = {
     "contacts": {"rows": 20, "particles": 4, "contacts": 2},
     "restarts": {"rows": 20, "particles": 4, "restarts": 2},
     "rows alone": {"rows": 20, "particles": 0},
+    "pictures": {"rows": 20, "particles": 4, "pictures": 2, "color": "radius"},
 }
 MEASURES = {
     "none": None,
+    "number": {"kind": "count", "region": {"diameter": "8 mm", "z": ["0 mm", "20 mm"]}, "material": "glass"},
+    "mass": {"kind": "mass"},
     "force": {"kind": "force", "wall": "floor", "component": "z"},
-    "torque": {"kind": "torque", "wall": "lid"},
+    "side force": {"kind": "force", "wall": "lid", "component": "x"},
+    "torque": {"kind": "torque", "wall": "lid", "component": "y"},
+    "whole torque": {"kind": "torque", "wall": "lid", "component": "magnitude"},
     "flow": {"kind": "flow", "at": "20 mm"},
-    "height": {"kind": "height", "material": "glass"},
+    "flow of glass": {"kind": "flow", "at": "1 mm", "direction": "+x", "material": "glass"},
+    "height": {"kind": "height", "material": "glass", "share": 0.8, "region": {"x": ["-9 mm", "0 mm"]} | SLAB},
+    "repose": {"kind": "repose", "center": ["0.1 mm", "0 mm"], "region": {"x": ["-9 mm", "9 mm"]} | SLAB},
+    "slope over x": {"kind": "repose", "over": "x", "material": "glass"},
+    "slope over y": {"kind": "repose", "over": "y"},
+    "centre of mass": {"kind": "center_of_mass", "axis": "x", "material": "glass"},
+    "centre in a region": {"kind": "center_of_mass", "axis": "y", "region": {"x": ["-9 mm", "9 mm"]} | SLAB},
+    "highest of mass": {"kind": "center_of_mass", "axis": "z"},
     "porosity": {"kind": "porosity", "region": {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["2 mm", "9 mm"]}},
     "speeds of impacts": {"kind": "impact_speed", "bins": 4},
     "plastic work": {"kind": "plastic_work", "bins": 4},
 }
-ROOMS = {"open": {}, "periodic": {"periodic": True}}
+ROOMS = {
+    "closed": {},
+    "periodic": {"periodic": True},
+    "open boundary": {"open_boundary": True, "gravity": "1.62 m/s^2"},
+}
 SLOTS = {
     "room": ROOMS,
     "walls": WALLS,
     "law": LAWS,
+    "strength": STRENGTHS,
     "contact": CONTACTS,
     "dashpot": DASHPOTS,
     "mixture": MIXTURES,
@@ -134,7 +230,9 @@ SLOTS = {
     "bodies": BODIES,
     "phases": PHASES,
     "output": OUTPUTS,
+    "rows": ROWS,
     "measure": MEASURES,
+    "numerics": NUMERICS,
 }
 CHOICES = st.fixed_dictionaries({slot: st.sampled_from(list(options)) for slot, options in SLOTS.items()})
 
@@ -143,6 +241,8 @@ def files(folder: Path) -> None:
     """The files that cases with these features name."""
     (folder / "sieve.csv").write_text(SIEVE)
     (folder / "table.csv").write_text(TABLE)
+    (folder / "falling.csv").write_text(FALLING)
+    (folder / "stone.stl").write_text(stl_text("stone", tetrahedron(5.0)))
 
 
 def case_of(chosen: dict[str, str]) -> dict:
@@ -151,16 +251,17 @@ def case_of(chosen: dict[str, str]) -> dict:
     fill = {"name": "bed", "region": REGION, "particles": MIXTURES[chosen["mixture"]]} | AMOUNTS[chosen["amount"]]
     bodies = BODIES[chosen["bodies"]]
     first, second = PHASES[chosen["phases"]]
-    scene = (
-        CASE["scene"]
-        | ROOMS[chosen["room"]]
-        | {"wall": walls, "fill": [fill, *bodies.get("fill", [])], "body": bodies.get("body", [])}
-    )
-    data = CASE | {"materials": CASE["materials"] | {"glass": GLASS, "rubber": RUBBER}, "law": LAWS[chosen["law"]]}
+    scene = CASE["scene"] | ROOMS[chosen["room"]] | {"wall": walls, "row": ROWS[chosen["rows"]]}
+    scene |= {"fill": [fill, *bodies.get("fill", [])], "body": bodies.get("body", [])}
+    glass = {key: value for key, value in GLASS.items() if key != "yield_stress"} | STRENGTHS[chosen["strength"]]
+    data = CASE | {"materials": CASE["materials"] | {"glass": glass, "rubber": RUBBER}, "law": LAWS[chosen["law"]]}
     data |= {"scene": scene | {"phase": [FIRST | first, SECOND | second]}, "output": OUTPUTS[chosen["output"]]}
-    data |= {"numerics": {"time_step": "5e-6 s"}, "contact": CONTACTS[chosen["contact"]]}
-    if dashpot := DASHPOTS[chosen["dashpot"]]:
-        data["viscous"] = dashpot
+    data |= {"numerics": NUMERICS[chosen["numerics"]], "contact": CONTACTS[chosen["contact"]]}
+    dashpot = DASHPOTS[chosen["dashpot"]]
+    if "viscous" in dashpot:
+        data["viscous"] = dashpot["viscous"]
+    if pairs := dashpot.get("pairs", []):
+        data["contact"] = data["contact"] | {"pairs": [*data["contact"].get("pairs", []), *pairs]}
     if measure := MEASURES[chosen["measure"]]:
         data["scene"]["measure"] = [{"name": "measured"} | measure]
     return deepcopy(data)

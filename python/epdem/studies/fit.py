@@ -98,9 +98,8 @@ class _Search:
     def _numbers(self, sweep: Sweep, number: int) -> dict[str, float]:
         about = store.record(sweep, self.folder, number)
         if about["state"] != store.DONE:
-            raise EngineError(
-                f"{sweep.place(number)}: {about['reason']}; see {store.point_folder(sweep, self.folder, number)}"
-            )
+            reason = about.get("reason", "its inputs changed during the fit")
+            raise EngineError(f"{sweep.place(number)}: {reason}; see {store.point_folder(sweep, self.folder, number)}")
         return {name: row[0] for name, row in about["rows"].items() if isinstance(row[0], float)}
 
     def _target(self, name: str, text: str | float) -> float:

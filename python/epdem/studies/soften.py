@@ -81,8 +81,8 @@ def _forces(data: dict[str, Any]) -> Iterator[tuple[Key, str]]:
     for n, phase in enumerate(_phases(data)):
         moves = [((n, "move", m), move) for m, move in enumerate(phase.get("move", []))]
         for place, table in [*moves, ((n, "until"), phase.get("until", {}))]:
-            if "force" in table:
-                yield ("scene", "phase", *place, "force"), table["force"]
+            for key in {"force", "force_below"} & set(table):
+                yield ("scene", "phase", *place, key), table[key]
 
 
 def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]:
