@@ -461,13 +461,16 @@ double FixWallRegion::way() const {
   return most;
 }
 
-/// A part can hide the nearest point of another: each part is tested alone, from inside and outside.
+/// A part can hide the nearest point of another: each part is tested alone, from inside and outside. From outside
+/// LAMMPS finds no face of an open part that is infinite (INF), but the sphere can enter through it: all are near.
 bool FixWallRegion::is_near(int i, double distance) {
   const double* const x = atom->x[i];
   for (Region* const part : parts_) {
     if (part->reglist) continue;
-    const int side = part->interior;
-    bool near = false;
+    const int side = part->interior, open = part->openflag;
+    part->openflag = 0;
+    bool near = open && !(part->match(x[0], x[1], x[2]) == side);
+    part->openflag = open;
     for (part->interior = 0; part->interior < 2; ++part->interior)
       near |= part->surface(x[0], x[1], x[2], distance) > 0;
     part->interior = side;

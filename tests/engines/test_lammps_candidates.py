@@ -19,6 +19,8 @@ WALLS = {
     "sphere": f"region r sphere 0 0 0 0.018\nfix w all wall/ep/region r {LAW}\n",
     "union": f"{UNION}region r union 2 a b\nfix w all wall/ep/region r {LAW}\n",
     "outside": f"region r block -0.006 0.006 -0.006 0.006 -0.006 0.006 side out\nfix w all wall/ep/region r {LAW}\n",
+    "open": "region r block INF INF INF INF INF 0.0025 open 1 open 2 open 3 open 4 open 5 units box\n"
+    f"fix w all wall/ep/region r {LAW}\n",
     "moved": f"variable z equal 2.0*step*dt\nregion r plane 0 0 -0.019 0 0 1 move NULL NULL v_z\n"
     f"fix w all wall/ep/region r {LAW}\n",
     "vibrating": f"variable z equal 0.004*sin(800*step*dt)\nregion r block -0.03 0.03 -0.03 0.03 -0.014 0.014 "
