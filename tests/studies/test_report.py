@@ -210,6 +210,17 @@ def test_labels_of_panels_do_not_overlap(labels, columns):
     assert apart and inside and spread and len(texts) > len(labels)
 
 
+@settings(max_examples=8)
+@given(st.lists(st.integers(1, 60), min_size=1, max_size=5))
+def test_the_legend_lies_within_the_figure(lengths):
+    axis, x = chart.Axis("x"), np.arange(2.0)
+    series = [chart.Series(f"{n} {'a' * length}", x, x) for n, length in enumerate(lengths)]
+    figure = chart.draw(chart.Chart("c", "c", "c", [chart.Panel(axis, axis, series)]))
+    figure.draw_without_rendering()
+    box, names = figure.legends[0].get_window_extent(), figure.legends[0].get_texts()
+    assert len(names) == len(lengths) and figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0.0
+
+
 def test_a_long_table_is_cut_and_says_so():
     rows = page.Rows("x", pd.DataFrame({"a": np.arange(20_000), "b": 0.5}))
     assert len(rows.cells()) == 6000 and "first 6000 of 20000 rows" in rows.notes

@@ -186,9 +186,14 @@ def draw(chart: Chart, *, title: bool = True) -> "Figure":
         label: handle for axes in grid.flat for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
     }
     if known:  # below the axes, where it covers no data
-        columns = min(len(known), 3)
+        for columns in range(min(len(known), 3), 0, -1):
+            legend = figure.legend(
+                list(known.values()), list(known), loc="outside lower center", ncols=columns, frameon=False
+            )
+            if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+                break
+            legend.remove()
         figure.set_figheight(figure.get_figheight() + LEGEND_ROW * math.ceil(len(known) / columns))
-        figure.legend(list(known.values()), list(known), loc="outside lower center", ncols=columns, frameon=False)
     if title:
         figure.suptitle(chart.title, fontsize=11, parse_math=False)
     return figure
