@@ -17,6 +17,12 @@ SLAB = {"y": ["-9 mm", "9 mm"], "z": ["-4 mm", "40 mm"]}
 SIEVE = "opening [mm],retained [%]\n2.4,0\n2.0,40\n1.6,60\n"
 TABLE = "x,y,z,radius,material\n0,0,0.034,0.001,steel\n0.004,0,0.034,0.001,glass\n"
 FALLING = "x,y,z,radius,vz\n0,0,0.034,0.001,-0.5\n"
+HEAP = "x,y,z,radius,material,vx,vy,vz\n" + "".join(
+    f"{x * 2.02e-3},{y * 2.02e-3},{z * 2.02e-3 - 3.9e-3},{r},{material},{0.3 * y},{0.2 - 0.3 * x * z},{0.4 * x - 0.2}\n"
+    for x in (-1, 0, 1)
+    for y, r in ((-1, 1e-3), (0, 9e-4), (1, 1e-3))
+    for z, material in enumerate(("glass", "steel"))
+)
 
 
 def plate(name, material, z, **keys):
@@ -61,7 +67,8 @@ WALLS = {
     "tube that turns": [TUBE],
     "cone that turns": [TURNING],
     "gate": [GATE],
-    "open box": [BOX | {"open": ["+z"], "material": "glass", "stress": True}],
+    "open box": [BOX | {"open": ["+z"], "material": "glass"}],
+    "box with stress": [BOX | {"open": ["+z"], "material": "glass", "stress": True}],
     "worn round walls": [
         DUCT | {"wear": "5e-6 m^2/N"},
         CONE | {"name": "cup", "center": ["-6 mm", "-3 mm"], "wear": "5e-6 m^2/N", "material": "steel"},
@@ -242,6 +249,7 @@ def files(folder: Path) -> None:
     (folder / "sieve.csv").write_text(SIEVE)
     (folder / "table.csv").write_text(TABLE)
     (folder / "falling.csv").write_text(FALLING)
+    (folder / "heap.csv").write_text(HEAP)
     (folder / "stone.stl").write_text(stl_text("stone", tetrahedron(5.0)))
 
 
