@@ -70,7 +70,7 @@ class NearSpheres {
   }
 
  private:
-  static constexpr double reach = 1.0 + 1e-6;  // far above round-off
+  const double reach = 1.0 + 1e-6;  // far above round-off
 
   struct Near {
     int triangle, count;

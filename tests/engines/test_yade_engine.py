@@ -117,7 +117,7 @@ def test_the_deck_is_plain_travels_with_its_law_and_runs_by_hand(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "YADE leaves a folder: False" in done.stdout
     samples = np.load(tmp_path / "b/path.bin")
-    assert samples.shape == (p.steps + 2, 3, 2 * p.n) and samples[:, 2].max() > 0
+    assert samples.shape == (p.steps + 2, 3, 1, 2 * p.n) and samples[:, 2].max() > 0
     assert not list((tmp_path / "b").glob("*.part"))
 
 

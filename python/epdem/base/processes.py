@@ -30,13 +30,18 @@ _came = False  # a signal, during these
 
 
 def install_signal_handlers(*numbers: signal.Signals) -> None:
-    """Let these signals (default: SIGNALS) raise Stopped in this process; forked processes call it again."""
+    """Let these signals (default: SIGNALS) raise Stopped in this process; forked processes call it again.
+
+    Raises Stopped if a signal came between the fork and this call.
+    """
     global _blocks, _came
-    _blocks, _came = 0, False
+    came, _blocks, _came = _came, 0, False
     for number in numbers or SIGNALS:
         signal.signal(number, _stop)
     signal.signal(signal.SIGALRM, _stop)
     sys.unraisablehook = _raise_stopped
+    if came:
+        _raise()
 
 
 @contextlib.contextmanager

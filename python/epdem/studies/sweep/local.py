@@ -64,7 +64,9 @@ def each(function: Callable[[Any], Any], items: deque[Any], jobs: int) -> Iterat
         for living, _ in team.values():
             living.terminate()
         for living, _ in team.values():
-            living.join()
+            while living.exitcode is None:  # Python drops a signal that comes during a fork
+                living.join(1.0)
+                living.terminate()
 
 
 def _exit_reason(code: int | None) -> str:
@@ -85,10 +87,10 @@ def _keep_memory() -> None:
 def _work(function: Callable[[Any], Any], item: Any, pipe: Connection, parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
-    processes.install_signal_handlers(signal.SIGTERM)
-    processes.end_with_parent()  # a parent that is killed cannot
-    _keep_memory()
     try:
+        processes.install_signal_handlers(signal.SIGTERM)
+        processes.end_with_parent()  # a parent that is killed cannot
+        _keep_memory()
         if os.getppid() == parent:
             try:
                 answer = True, function(item)
