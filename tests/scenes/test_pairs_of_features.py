@@ -6,6 +6,7 @@ units, a sweep and a softened copy with the case itself.
 """
 
 import math
+import os
 import re
 import tomllib
 from itertools import pairwise
@@ -63,6 +64,12 @@ EXCLUDED = [
     ({"measure": {"speeds of impacts"}, "output": WITHOUT_CONTACTS}, "give output.contacts"),
     ({"walls": {"plates of two worn materials"}} | BOTH_MATERIALS_OF_WALLS | SHARED_TYPES, "one value for each pair"),
 ]
+
+
+def tries(few, **more):
+    """So many fixed examples in the test suite, EPDEM_FUZZ random ones in `make fuzz`."""
+    many = os.environ.get("EPDEM_FUZZ")
+    return settings(max_examples=int(many or few), derandomize=not many, **more)
 
 
 PLAIN = {slot: next(iter(options)) for slot, options in SLOTS.items()}
@@ -186,7 +193,7 @@ def matrices(text):
     return {name: np.array(values.split(), float).reshape(int(n), int(n)) for name, n, values in found}
 
 
-@settings(max_examples=80)
+@tries(80)
 @given(chosen=CHOICES)
 def test_the_plan_and_the_deck_have_what_the_case_requests(chosen, folder):
     against = sentences_against(chosen)
@@ -242,7 +249,7 @@ def numbers_in(files):
     return re.sub(number, "#", text), np.array(re.findall(number, text), float)
 
 
-@settings(max_examples=25)
+@tries(25)
 @given(chosen=CHOICES)
 def test_other_units_make_the_same_deck(chosen, folder):
     assume(not sentences_against(chosen))
@@ -255,7 +262,7 @@ def test_other_units_make_the_same_deck(chosen, folder):
     assert np.allclose(found, values, rtol=1e-9, atol=1e-300)
 
 
-@settings(max_examples=25)
+@tries(25)
 @given(chosen=CHOICES, other=CHOICES)
 def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
     """The tables of one case, set as the values of a sweep over another one, give the one."""
@@ -271,7 +278,7 @@ def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
     assert parse(tomllib.loads(sweep.text(1)), folder / "case.toml") == expected
 
 
-@settings(max_examples=15)
+@tries(15)
 @given(chosen=CHOICES, factor=st.sampled_from([4.0, 100.0]))
 def test_a_softened_copy_scales_every_quantity_by_its_unit(chosen, factor, folder):
     """Moduli by 1/k, strengths by k^-0.8, forces and works of adhesion by k^-0.4; finite strain by k^0.14; the overlap
@@ -312,7 +319,7 @@ RANKS = st.sampled_from([1, 2])
 
 
 @pytest.mark.liggghts
-@settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
+@tries(8, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"contact": "cohesion"}, ranks=1)  # of all models cohesion alone has a history
 @example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"}, ranks=1)
 @given(chosen=CHOICES, ranks=RANKS)
@@ -322,7 +329,7 @@ def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
 
 
 @pytest.mark.yade("module")
-@settings(max_examples=4, phases=[Phase.explicit, Phase.generate])
+@tries(4, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"walls": "cone that turns", "amount": "poured", "bodies": "late body", "phases": "until rest"})
 @example(chosen=PLAIN | {"walls": "gate", "output": "loads", "phases": "wall presses", "measure": "torque"})
 @given(chosen=CHOICES)
@@ -332,7 +339,7 @@ def test_yade_runs_what_is_drawn(chosen, folder):
 
 
 @needs_lammps
-@settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
+@tries(8, phases=[Phase.explicit, Phase.generate])
 @given(chosen=CHOICES, ranks=RANKS)
 def test_lammps_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
@@ -348,7 +355,7 @@ ALIKE = {
 
 @needs_lammps
 @pytest.mark.liggghts
-@settings(max_examples=12, phases=[Phase.explicit, Phase.generate])
+@tries(12, phases=[Phase.explicit, Phase.generate])
 @given(chosen=CHOICES)
 def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
     assume(all(chosen[slot] in options for slot, options in ALIKE.items()) and not sentences_against(chosen))
