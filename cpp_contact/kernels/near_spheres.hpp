@@ -16,7 +16,7 @@ namespace epdem::kernels {
 /// the mesh has moved by a part of the skin.
 class NearSpheres {
  public:
-  /// New neighbour lists: those of the first `triangles`, of which spheres below `owned` count.
+  /// Read new neighbour lists of the first `triangles`; only spheres below `owned` count.
   template <class SpheresOf, class PlanesOf>
   void take(int triangles, int owned, SpheresOf spheres_of, PlanesOf planes_of) {
     std::vector<int> place(owned, -1);  // of a sphere in spheres_

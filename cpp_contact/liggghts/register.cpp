@@ -259,8 +259,7 @@ const struct Registration {
 #ifdef EPDEM_BUILT_FOR
 /// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": for a name that starts with
 /// ep the message lists what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
-/// the launcher or a preloaded library first; the other symbols that
-/// the plugin exports are those of loop/.
+/// the launcher or a preloaded library first. All other exported symbols of the plugin stand in loop/.
 [[gnu::visibility("default")]] int64_t LIGGGHTS::ContactModels::Factory::select(
     int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
   using namespace epdem::liggghts;

@@ -74,7 +74,7 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
     commands, makefile = guide.names(), (ROOT / "Makefile").read_text()
     seen = 0
     for _, words, text in of("sh"):
-        for line in text.splitlines() if words[:1] in (["in"], ["by"]) else ():
+        for line in text.replace("\\\n", " ").splitlines() if words[:1] in (["in"], ["by"]) else ():
             line = re.sub(r"^\w+=\S+ ", "", line)
             program, *rest = line.split()
             known = {

@@ -95,7 +95,7 @@ struct Growing {
   void keep() const noexcept {}
 };
 
-/// The sums of one body of a host, which stores those of all side by side; null: without compaction.
+/// The sums of one body, from the array in which a host stores the sums of all bodies; null: without compaction.
 inline BodySums<double> sums_of(const double* all, long body) noexcept {
   return all ? BodySums<double>{all[2 * body], all[2 * body + 1]} : BodySums<double>{};
 }

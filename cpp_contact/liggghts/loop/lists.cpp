@@ -67,7 +67,7 @@ std::vector<Row> rows_of(const LAMMPS_NS::NeighList& list) {
   return rows;
 }
 
-/// The state for a search of ours; nullptr: LIGGGHTS's own functions search.
+/// The state of a simulation whose neighbours the plugin searches; nullptr: LIGGGHTS's own functions search.
 LoopState* searching_loops(LAMMPS_NS::LAMMPS* lmp) {
   return lmp->atom->nlocal > 0 && lmp->atom->radius ? active_loops(lmp) : nullptr;
 }

@@ -18,7 +18,7 @@
 namespace epdem::liggghts::loop {
 namespace {
 
-/// The state if ours take over: all of the first n spheres are in the group of a fix.
+/// The state if the plugin moves the spheres: all of the first n spheres are in the group of a fix; else nullptr.
 const LoopState* loops_of_all(LAMMPS_NS::LAMMPS* lmp, int group, int n) {
   const LAMMPS_NS::Atom& atom = *lmp->atom;
   int common = group;

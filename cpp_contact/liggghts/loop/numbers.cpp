@@ -101,8 +101,8 @@ namespace loop = epdem::liggghts::loop;
   if (*computeflag_ || !loop::deletes_atoms(lmp)) original(this);
 }
 
-/// Stores histories before LIGGGHTS deletes the lists that hold them: where the style or the pages of lists, or who
-/// asks for lists, are not those of the run before.
+/// Stores histories before LIGGGHTS deletes the lists that hold them. LIGGGHTS deletes lists whose style, pages or
+/// requests have changed since the run before.
 [[gnu::visibility("default")]] void Neighbor::init() {
   static const auto original = loop::next<Neighbor*>("_ZN9LAMMPS_NS8Neighbor4initEv");
   if (epdem::liggghts::library_matches(lmp))
