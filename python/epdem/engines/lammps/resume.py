@@ -10,8 +10,7 @@ from ...jobs.engine import Report
 from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ..restarts import choose, later, phase_at, pruning
-from . import launcher
-from . import tables as tables
+from . import launcher, tables
 from .deck import Restart, SceneDeck, deck
 from .scene_walls import DeckWall, motions_again, plane
 

@@ -14,8 +14,7 @@ from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..restarts import choose, later, phase_at, pruning
-from . import launcher
-from . import tables as tables
+from . import launcher, tables
 from .deck import SceneDeck, deck
 from .scene_parts import InsertFix
 
