@@ -17,13 +17,14 @@ from pathlib import Path
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "engines"))
 
 from plugin_compaction import NU, E, Y
 from test_plugin_compaction import falls, walks
 
+from bed import PLANE, Bed, Material
 from epdem.engines.lammps import launcher
-from epdem.verification.theory.bed import PLANE, Bed, Material
 
 DENSITIES = np.array([0.65, 0.70, 0.75, 0.80, 0.85, 0.90, 0.93, 0.95, 0.965])
 RIGID = 1e3  # modulus of the walls over that of the spheres; their yield stress over that of the spheres

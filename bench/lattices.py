@@ -19,9 +19,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "engin
 
 import lammps_lattices
 
-from dense_lattices import MATERIALS, RELEASES, deviation, finite_elements, parts
-from epdem.verification.theory.bed import Material
-from epdem.verification.theory.compaction import (
+from bed import Material
+from bed_lattices import (
     die_path,
     die_stresses,
     isotropic_pressure,
@@ -29,6 +28,7 @@ from epdem.verification.theory.compaction import (
     press,
     recovery,
 )
+from dense_lattices import MATERIALS, RELEASES, deviation, finite_elements, parts
 
 DENSITIES = {
     "fcc": (0.80, 0.90, 0.95),

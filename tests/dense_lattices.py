@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.verification.theory.bed import Material
-from epdem.verification.theory.compaction import (
+from bed import Material
+from bed_lattices import (
     BCC,
     FCC,
     HEXAGONAL,

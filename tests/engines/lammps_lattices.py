@@ -4,10 +4,10 @@
 import numpy as np
 from lammps_decks import column, run
 
+from bed import Material
+from bed_lattices import distance_at
 from dense_lattices import LATTICES
 from epdem.theory.cavity import FINITE_STRAIN
-from epdem.verification.theory.bed import Material
-from epdem.verification.theory.compaction import distance_at
 
 # LAMMPS's lattice at first touch of spheres of radius 1, cells along an edge: no two neighbors are the same sphere
 CELLS = {

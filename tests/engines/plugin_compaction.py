@@ -4,7 +4,7 @@
 import numpy as np
 from plugin_decks import good
 
-from epdem.verification.theory.bed import Bed, Material
+from bed import Bed, Material
 
 E, NU, Y = 120e6, 0.34, 1e6
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from lammps_decks import needs_lammps
 
-from dense_lattices import DEVIATIONS, LATTICES, RELEASES, deviation, parts
-from epdem.verification.theory.bed import Material
-from epdem.verification.theory.compaction import (
+from bed import Material
+from bed_lattices import (
     die_path,
     die_stresses,
     distance_at,
@@ -17,6 +16,7 @@ from epdem.verification.theory.compaction import (
     press,
     recovery,
 )
+from dense_lattices import DEVIATIONS, LATTICES, RELEASES, deviation, parts
 
 pytestmark = needs_lammps
 

@@ -9,8 +9,8 @@ from lammps_walks import FLIGHT, falls, fly, nine_spheres, one_body, two_bodies,
 from plugin_compaction import NU, E, Y, data, deck
 from plugin_compaction import run as run_liggghts
 
+from bed import Bed, Material
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
-from epdem.verification.theory.bed import Bed, Material
 
 pytestmark = needs_lammps
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from lammps_decks import needs_lammps
 
+import oblique
 from epdem.base.terminal import console
 from epdem.case import impact as cases
 from epdem.case.toml import LoadedCase, read_toml
@@ -22,7 +23,6 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
-from epdem.verification.theory import oblique
 
 CASE = Path(__file__).parents[2] / "cases" / "oblique_steel.toml"
 MU, NU = 0.3, 0.3

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from plugin_decks import NU, RHO, Bodies, E, contact, good, head, materials, per_pair
 
+import oblique
 from epdem.theory import backbones, pair, viscous
-from epdem.verification.theory import oblique
 
 pytestmark = pytest.mark.liggghts
 

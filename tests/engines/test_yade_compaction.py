@@ -9,7 +9,7 @@ from test_plugin_compaction import CLUSTER, FLOOR, MOVES, RADII, assert_second_o
 from test_plugin_compaction import cluster as cluster_of_liggghts
 from yade_native import ROOT, yade
 
-from epdem.verification.theory.bed import Bed, Material
+from bed import Bed, Material
 from scenes.parts_cases import parts
 from scenes.scene_runs import run as run_scene
 from scenes.scene_runs import write_case

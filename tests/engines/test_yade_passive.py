@@ -11,8 +11,8 @@ from plugin_compaction import NU, E, Y
 from test_lammps_passive import BEDS, HARD, SOFT, SOFTEST
 from yade_native import yade
 
+from bed import Material
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
-from epdem.verification.theory.bed import Material
 
 pytestmark = pytest.mark.yade("module")
 

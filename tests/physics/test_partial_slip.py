@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
+import oblique
 from epdem.theory import partial_slip, restitution
 from epdem.theory.backbones import Cavity, Hertz
-from epdem.verification.theory import oblique
 
 E_STAR, G_STAR, MU, M, R = 1.142857e11, 2.3529e10, 0.3, 0.032882, 0.01  # steel sphere on steel
 KAPPA = 4 * G_STAR / E_STAR

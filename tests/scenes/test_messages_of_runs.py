@@ -30,7 +30,6 @@ from epdem.jobs.stage import Inputs, Stage
 from epdem.scenes import columns, meshes, run
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
-from epdem.verification.theory.criteria import principal
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -155,8 +154,6 @@ def test_decks_and_studies(tmp_path):
         variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
         own_decks.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
-    with says(r"stress has shape \(3,\), must end in \(3, 3\)", ValueError):
-        principal([1.0, 2.0, 3.0])
 
 
 def test_folders_and_files_of_a_user(tmp_path):

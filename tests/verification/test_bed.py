@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Contacts of one body that feel each other, in numpy: limits, symmetry, energy, and the elastic sphere."""
 
+import elastic_sphere
 import numpy as np
 import pytest
 
+import bed as model
+from bed import PLANE, RIGID, Bed, Material
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
-from epdem.verification.theory import bed as model
-from epdem.verification.theory import elastic_sphere
-from epdem.verification.theory.bed import PLANE, RIGID, Bed, Material
 
 HARD, SOFT, SOFTEST = Material(120.0, 0.34, 1.0), Material(30.0, 0.2, 1.0), Material(10.0, 0.3, 1.0)
 

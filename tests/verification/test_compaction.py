@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pressed and released lattices of the law of dense beds in numpy, against finite elements."""
 
+import elastic_sphere
 import numpy as np
 import pytest
 
+from bed import PLANE, Bed, Material
+from bed_lattices import distance_at, recovery, released
 from dense_lattices import (
     DEVIATIONS,
     LATTICES,
@@ -18,9 +21,6 @@ from dense_lattices import (
 )
 from epdem.theory import pair
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
-from epdem.verification.theory import elastic_sphere
-from epdem.verification.theory.bed import PLANE, Bed, Material
-from epdem.verification.theory.compaction import distance_at, recovery, released
 
 
 @pytest.fixture(scope="module")

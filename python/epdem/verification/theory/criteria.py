@@ -36,14 +36,6 @@ def first_yield(nu: Real) -> tuple[Array, Array]:
     return 1 / axis_difference(z, nu), z
 
 
-def principal(stress: ArrayLike) -> Array:
-    """Principal stresses, shape (..., 3), ascending, of symmetric tensors of shape (..., 3, 3)."""
-    stress = np.asarray(stress, float)
-    if stress.shape[-2:] != (3, 3):
-        raise ValueError(f"stress has shape {stress.shape}, must end in (3, 3)")
-    return np.asarray(np.linalg.eigvalsh(stress))
-
-
 def von_mises(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
     """Equivalent stress sqrt(3 J2) of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
 
@@ -60,17 +52,6 @@ def tresca(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
     """
     s = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (s1, s2, s3))))
     return np.asarray(s.max(axis=0) - s.min(axis=0))
-
-
-CRITERIA = {"von_mises": von_mises, "tresca": tresca}
-
-
-def equivalent(stress: ArrayLike, criterion: str) -> Array:
-    """Equivalent stress of tensors (..., 3, 3) by "von_mises" or "tresca". ValueError for another name."""
-    if criterion not in CRITERIA:
-        raise ValueError(f"criterion = {criterion!r}, must be one of {', '.join(CRITERIA)}")
-    p = principal(stress)
-    return CRITERIA[criterion](p[..., 0], p[..., 1], p[..., 2])
 
 
 def first_yield_mean(nu: Real) -> Array:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...theory.cavity import FINITE_STRAIN
-from ...theory.numerics import Array
-from .bed import PLANE, Bed, Material
+from bed import PLANE, Bed, Material
+from epdem.theory.cavity import FINITE_STRAIN
+from epdem.theory.numerics import Array
 
 
 @dataclass(frozen=True)

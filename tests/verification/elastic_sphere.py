@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ...theory.numerics import Array, bisect, segment
+from epdem.theory.numerics import Array, bisect, segment
 
 DEGREES = 2000  # of the series; the terms fall with the third power
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...theory.backbone import Backbone
-from ...theory.hertz import Hertz
-from ...theory.numerics import Array, Real, number, poisson_ratio
-from ...theory.partial_slip import rebound
-from ...theory.restitution import e_n as normal_restitution
+from epdem.theory.backbone import Backbone
+from epdem.theory.hertz import Hertz
+from epdem.theory.numerics import Array, Real, number, poisson_ratio
+from epdem.theory.partial_slip import rebound
+from epdem.theory.restitution import e_n as normal_restitution
 
 STEEPEST = 1.5707  # of impact angles [rad]: just below pi/2
 
@@ -52,11 +52,6 @@ def sliding_angle(mu: Real, *, e_n: Real, nu: Real) -> Real:
     For e_n = 1 it is mu (7 - 1/kappa) (Maw, Barber and Fawcett 1976).
     """
     return np.arctan(number("mu", mu, low_ok=True) * (3.5 * _approach_and_rebound(e_n) - e_n / kappa(nu)))
-
-
-def sliding_angle_spring(mu: Real, *, e_n: Real, nu: Real) -> Real:
-    """The same for a DEM spring k_t = 8 G* a that is cut off at mu F: mu [(7/2)(1+e_n) - (2/3) e_n/kappa]."""
-    return np.arctan(number("mu", mu, low_ok=True) * (3.5 * _approach_and_rebound(e_n) - 2 / 3 * e_n / kappa(nu)))
 
 
 @dataclass(frozen=True)

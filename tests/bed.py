@@ -11,9 +11,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ...theory.cavity import FINITE_STRAIN, Cavity
-from ...theory.numerics import Array, gauss
-from ...theory.pair import curvature_share, strain_share
+from epdem.theory.cavity import FINITE_STRAIN, Cavity
+from epdem.theory.numerics import Array, gauss
+from epdem.theory.pair import curvature_share, strain_share
 
 Index: TypeAlias = NDArray[np.intp]
 
