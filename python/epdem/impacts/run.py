@@ -71,23 +71,6 @@ def _facts(p: Plan) -> object:
     return x.law, x.body, x.target, x.viscous_restitution, friction, numbers
 
 
-def run_and_compare(
-    p: Plan,
-    prediction: Prediction,
-    tool: ImpactEngine,
-    folder: Path,
-    *,
-    law: str | None = None,
-    ranks: int = 1,
-) -> tuple[pd.DataFrame, Stage]:
-    """`run_plan`, and its impacts compared with their prediction: one row per speed.
-
-    `law` is the name in the rows (None: the plan's law).
-    """
-    stage, x = run_plan(p, tool, folder, ranks=ranks), p.experiment
-    return compare(tool.name, law or x.law.name, stage.tables["impacts"], prediction, x.check), stage
-
-
 def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool = False) -> list[Path]:
     """Write the deck of an experiment into `folder`, where `force` allows other files; its files. Raises CaseError."""
     if Feature.DECK not in tool.features:

@@ -22,10 +22,10 @@ from ..errors import EngineError
 from ..impacts.experiment import experiment, pair_of
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
-from ..impacts.run import run_and_compare
 from ..jobs.engine import require
 from ..laws.strengths import default_numbers
 from .models import REFERENCE, SAME_LAW, engine, only_law
+from .runner import compare_impacts
 from .stability.cases import HARDENING
 from .timing import seconds
 
@@ -88,7 +88,7 @@ def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
     for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
         try:
             longest = replace(p, steps=int(p.steps * longer))
-            rows, _ = run_and_compare(longest, c.prediction, c.engine, folder)
+            rows, _ = compare_impacts(longest, c.prediction, c.engine, folder)
             break
         except EngineError:
             if longer == 2.0:

@@ -6,13 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from rich.console import Console
 
 from ..base.tables import write_csv
-from ..base.terminal import show_table
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, save
 from .cost import TARGETS, Outcome
-from .tables import frame_table
 
 
 def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
@@ -106,13 +103,12 @@ def bulk_table(bulk: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def show(outcome: Outcome, bulk: pd.DataFrame | None, console: Console) -> None:
-    """Print all tables; `bulk` is that of a bulk scene, if it ran."""
-    tables = [
-        (f"{outcome.case.case.title}: errors (max and rms over speeds and phases)", error_table(outcome.rows)),
-        ("cheapest setting for an error of e_n (stepping time per impact)", cheapest_table(outcome.models)),
-    ]
+def tables(outcome: Outcome, bulk: pd.DataFrame | None) -> dict[str, pd.DataFrame]:
+    """All tables by title; `bulk` is that of a bulk scene, if it ran."""
+    found = {
+        f"{outcome.case.case.title}: errors (max and rms over speeds and phases)": error_table(outcome.rows),
+        "cheapest setting for an error of e_n (stepping time per impact)": cheapest_table(outcome.models),
+    }
     if bulk is not None:
-        tables.append((f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy", bulk_table(bulk)))
-    for title, frame in tables:
-        show_table(console, frame_table(title, frame))
+        found[f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy"] = bulk_table(bulk)
+    return found

@@ -2,7 +2,7 @@
 """One case on every installed engine: theory, our laws and those of other codes, in one table and figure."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,10 +20,11 @@ from ..impacts import report
 from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
-from ..impacts.run import Outcome, run, run_and_compare
+from ..impacts.run import Outcome, run
 from .invariance.check import VARIANTS, Invariance, examine
 from .models import OWN_LAW, SAME_LAW, OwnTheory
 from .models.predictions import prediction as predict
+from .runner import Progress, compare_impacts, silent
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
 OBLIQUE = ("psi_2_error", "e_t_error")  # absolute, the largest
@@ -80,9 +81,7 @@ def models(x: Experiment, chosen: Sequence[str] = ()) -> tuple[dict[str, ImpactE
 def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
     """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
     prediction = tool.predict(x)
-    p = plan(x, prediction)
-    rows, stage = run_and_compare(p, prediction, tool, folder, law=tool.name)
-    return rows, stage.seconds["seconds"]
+    return compare_impacts(plan(x, prediction), prediction, tool, folder, tool.name)
 
 
 def _row(
@@ -122,7 +121,7 @@ def crosscheck(
     out: Path | None = None,
     fresh: bool = False,
     force: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Crosscheck:
     """Run a case on every engine and every model of another code, or on those named by `engines`.
 

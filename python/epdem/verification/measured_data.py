@@ -22,12 +22,11 @@ from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
-from ..impacts.run import run_and_compare
 from ..jobs.engine import require
 from ..laws.strengths import default_numbers, find_law, strength_of_hardness
 from ..studies.calibrate import EXPONENT, hardness_test, specimen
 from .models import engine
-from .runner import STUDIES, Progress, Row, run, silent
+from .runner import STUDIES, Progress, Row, compare_impacts, run, silent
 
 QUANTITIES = ("e_n", "dent_width")
 HEAD = ("title", "case", "source", "material", "read", "uncertainty")
@@ -127,7 +126,7 @@ def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Pa
         x = experiment(case_of(measured, str(material), float(given), speeds.tolist(), law), law)
         prediction = predict(x)
         for tool in tools:
-            impacts, _ = run_and_compare(plan(x, prediction), prediction, tool, scratch)
+            impacts, _ = compare_impacts(plan(x, prediction), prediction, tool, scratch)
             for point in points.itertuples():
                 row = impacts.iloc[int(np.flatnonzero(speeds == point.speed)[0])]
                 found = _simulated(x, row, str(point.quantity))

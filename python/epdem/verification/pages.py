@@ -39,35 +39,32 @@ def of_crosscheck(check: Crosscheck) -> Path:
     return common.write_study_page(page, check.outcome.folder)
 
 
+def _study_page(title: str, sentence: str, parts: list[Part], *, passed: bool | None = None) -> Page:
+    """The page of a study: these parts and the versions."""
+    every = [*parts, common.origin({}, {})]
+    return Page(title, [sentence], every, passed=passed, command=common.command())
+
+
 def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
     """Write the page of error against run time."""
-    parts: list[Part] = [
-        cost_report.chart(outcome),
-        Rows("Cheapest setting for an error of e_n", cost_report.cheapest_table(outcome.models)),
-        Rows("Errors and times", outcome.rows, {"ns_per_impact": "ns"}),
-    ]
-    if bulk is not None:
-        parts.insert(2, Rows("Bulk scene in LIGGGHTS", cost_report.bulk_table(bulk)))
-    names = ", ".join(outcome.models["model"])
-    said = (
-        f"Error of e_n and stepping time of {names} at {outcome.rows['steps'].nunique()} numbers of steps in contact."
-    )
-    parts.append(common.origin({}, {}))
-    page = Page(f"{outcome.case.case.title}: error against run time", [said], parts, command=common.command())
-    return common.write_study_page(page, folder)
+    _, *tables = cost_report.tables(outcome, bulk).items()
+    parts: list[Part] = [cost_report.chart(outcome), *(Rows(title, table) for title, table in tables)]
+    parts.append(Rows("Errors and times", outcome.rows, {"ns_per_impact": "ns"}))
+    names, steps = ", ".join(outcome.models["model"]), outcome.rows["steps"].nunique()
+    said = f"Error of e_n and stepping time of {names} at {steps} numbers of steps in contact."
+    title = f"{outcome.case.case.title}: error against run time"
+    return common.write_study_page(_study_page(title, said, parts), folder)
 
 
 def of_stability(outcome: Stability, path: Path) -> Path:
     """Write the page of the extreme cases to `path`."""
     verdicts = outcome.verdicts
+    tables = {"By engine and law": summary(verdicts), "Every case": verdicts}
+    tables |= {"Round-off": outcome.roundoff, "Bulk scenes": outcome.bulk}
+    parts: list[Part] = [Rows(title, table) for title, table in tables.items() if not table.empty]
     count = verdicts["status"].value_counts()
-    parts: list[Part] = [Rows("By engine and law", summary(verdicts)), Rows("Every case", verdicts)]
-    named = {"Round-off": outcome.roundoff, "Bulk scenes": outcome.bulk}
-    parts += [Rows(title, table) for title, table in named.items() if not table.empty]
-    parts.append(common.origin({}, {}))
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
-    page = Page("Stiff and extreme cases", [said], parts, passed=outcome.passed, command=common.command())
-    return write(path, page)
+    return write(path, _study_page("Stiff and extreme cases", said, parts, passed=outcome.passed))
 
 
 def validation_chart(v: Validation) -> Chart:
@@ -91,9 +88,7 @@ def of_validation(v: Validation) -> Path:
     parts: list[Part] = [chart, Rows("By set, law and engine", v.summary), Rows("Every point", v.points)]
     parts += [Facts(one.head["title"], {k: one.head[k] for k in ("source", "material", "read")}) for one in v.sets]
     parts += [Facts("Left out", v.absent)] if v.absent else []
-    parts.append(common.origin({}, {}))
     said = f"{len(v.points)} comparisons with measured numbers; nothing is fitted, and no law has a tolerance here."
-    page = Page("Laws against measured impacts", [said], parts, command=common.command())
     with claim(v.folder, force=True):
         save(chart, v.folder)
-        return common.write_study_page(page, v.folder)
+        return common.write_study_page(_study_page("Laws against measured impacts", said, parts), v.folder)

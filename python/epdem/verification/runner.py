@@ -11,6 +11,11 @@ import pandas as pd
 
 from ..base.files import claim
 from ..base.tables import write_csv
+from ..impacts.comparison import compare
+from ..impacts.engine import ImpactEngine
+from ..impacts.plan import Plan
+from ..impacts.prediction import Prediction
+from ..impacts.run import run_plan
 
 Row = dict[str, Any]
 Progress = Callable[[str], None]
@@ -63,6 +68,18 @@ STUDIES = {
     name: Study(**about | {"engines": tuple(about.get("engines", ()))})
     for name, about in tomllib.loads(Path(__file__).with_name("studies.toml").read_text(encoding="utf-8")).items()
 }
+
+
+def compare_impacts(
+    p: Plan, prediction: Prediction, tool: ImpactEngine, folder: Path, law: str = ""
+) -> tuple[pd.DataFrame, float]:
+    """Impacts of a plan compared with their prediction, one row per speed, and run time [s].
+
+    law: name in the rows, else that of the plan. Raises EngineError, and CaseError for what the engine cannot do.
+    """
+    stage, x = run_plan(p, tool, folder), p.experiment
+    rows = compare(tool.name, law or x.law.name, stage.tables["impacts"], prediction, x.check)
+    return rows, stage.seconds["seconds"]
 
 
 def run(name: str, rows: Iterable[Row], folder: Path, *, force: bool = False) -> Outcome:

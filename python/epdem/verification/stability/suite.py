@@ -16,6 +16,7 @@ from ...errors import CaseError
 from ...jobs.engine import Feature, check_law, has_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from ..models import engine
+from ..runner import STUDIES
 from . import bulk
 from .cases import Extreme, extremes
 from .repeats import judge_repeats
@@ -127,6 +128,12 @@ def ends(chosen: list[Extreme]) -> list[Extreme]:
     for extreme in chosen:
         groups.setdefault(extreme.group, []).append(extreme)
     return [e for group in groups.values() for e in ([group[0]] if len(group) == 1 else [group[0], group[-1]])]
+
+
+def tables(outcome: Outcome) -> dict[str, pd.DataFrame]:
+    """The summary by engine and law, and the stiff bulk scenes if they ran, by title."""
+    found = {"extreme cases; steps as shares of the stability limit": summary(outcome.verdicts)}
+    return found if outcome.bulk.empty else found | {STUDIES["bulk"].title: outcome.bulk}
 
 
 def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
