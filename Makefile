@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Each target calls scripts and tools.
-.PHONY: setup demo trixie container lammps yade test faults packaging slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade lock versions fuzz valgrind reliability tutorials wheel deb release trees clean
+.PHONY: setup demo trixie container lammps yade test faults packaging thorough slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade lock versions fuzz valgrind reliability tutorials wheel deb release trees clean
 
 setup:
 	@scripts/setup
@@ -40,6 +40,10 @@ faults: setup
 # what is given away: the wheel, the files for other LIGGGHTS trees, the order of the targets
 packaging: setup
 	.venv/bin/python -m pytest -n 3 --dist worksteal -m packaging
+
+# what `make test` tries in part: each line of each deck, each law where laws share the code
+thorough: setup
+	.venv/bin/python -m pytest -n 3 --dist worksteal -m thorough
 
 # sweeps on a cluster of two nodes on this machine; as root, for it installs and starts Slurm
 slurm:

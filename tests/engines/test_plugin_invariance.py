@@ -7,6 +7,10 @@ from plugin_decks import ADHESIVE, LAWS
 from plugin_invariance import Suite
 
 OURS = (*LAWS, *ADHESIVE, "thornton ep/partial_slip_2", "cavity ep/partial_slip")
+PATHS = ("thornton", "jkr", "thornton_ning", "cavity ep/partial_slip")  # one law for each path of the code
+every_law = pytest.mark.parametrize(
+    "law", [pytest.param(law, marks=[pytest.mark.thorough] * (law not in PATHS)) for law in OURS]
+)
 pytestmark = pytest.mark.liggghts
 
 ROUND_OFF = 1e-12
@@ -26,7 +30,7 @@ def rows(request, tmp_path_factory):
     return of
 
 
-@pytest.mark.parametrize("law", OURS)
+@every_law
 def test_order_and_place_change_no_bit(rows, law):
     others = ("momentum", "mesh", "second", "rotation", "heap")
     off = {k: row() for k, row in rows(f"ep/{law}").items() if not any(word in k for word in others)}
@@ -34,7 +38,7 @@ def test_order_and_place_change_no_bit(rows, law):
     assert off == dict.fromkeys(off, (0.0, 0.0))
 
 
-@pytest.mark.parametrize("law", OURS)
+@every_law
 def test_a_mesh_is_the_primitive_wall_to_round_off(rows, law):
     off = {k: row() for k, row in rows(f"ep/{law}").items() if "mesh" in k}
     assert len(off) == 3
@@ -42,19 +46,19 @@ def test_a_mesh_is_the_primitive_wall_to_round_off(rows, law):
         assert pairs == 0.0 and walls < ROUND_OFF, name
 
 
-@pytest.mark.parametrize("law", OURS)
+@every_law
 def test_momentum_of_a_pair_is_kept(rows, law):
     for name in ("momentum of a pair", "momentum of a pair on 2 ranks"):
         assert rows(f"ep/{law}")[name]()[0] < ROUND_OFF
 
 
-@pytest.mark.parametrize("law", OURS)
+@every_law
 def test_a_second_impact_is_a_new_contact_whatever_the_neighbour_list(rows, law):
     for name in ("second impact in one list", "second impact, fast parting"):
         assert rows(f"ep/{law}")[name]()[0] < ROUND_OFF, name
 
 
-@pytest.mark.parametrize("law", OURS)
+@every_law
 def test_rows_ranks_and_runs_change_a_heap_with_dashpots_by_round_off(rows, law):
     """The evaluation before a second run takes a contact that slides as one that slides, whatever the last digit says.
 

@@ -24,6 +24,8 @@ CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 SCENES = [path for path in CASES if is_scene(read_toml(path))]  # of impacts: tests/decks/test_lean_impacts.py
 STRAIGHT = [path for path in SCENES if "stages" not in read_toml(path)["scene"]]  # a run takes one way through `until`
 
+SOME = [pytest.param(p, marks=[pytest.mark.thorough] * (p.stem != "peening_steel")) for p in STRAIGHT]
+
 # The same decks with few spheres and steps; every wall is still touched.
 SMALL = {
     "settle": {"box": ["12 mm", "12 mm", "30 mm"], "count": 70, "duration": "0.08 s"},
@@ -83,7 +85,7 @@ def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("path", STRAIGHT, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", SOME, ids=lambda p: p.stem)
 def test_removing_any_line_of_a_deck_breaks_the_run_or_changes_what_it_puts_out(path, tmp_path):
     run, files = decks_of(path, tmp_path / "deck")
     found = removals(tmp_path / "deck", tmp_path / "without", run, files)
