@@ -41,7 +41,7 @@ faults: setup
 packaging: setup
 	.venv/bin/python -m pytest -n 3 --dist worksteal -m packaging
 
-# what `make test` tries in part: each line of each deck, each law where laws share the code
+# what `make test` does in part: each line of each deck, each block of long pages, each law where laws share the code
 thorough: setup
 	.venv/bin/python -m pytest -n 3 --dist worksteal -m thorough
 

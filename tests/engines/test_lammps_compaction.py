@@ -56,6 +56,7 @@ def cluster(folder, steps, *, law=ON, runs=None, head="", ranks=1):
     return frames(folder, text, spheres, ranks=ranks)
 
 
+@pytest.mark.thorough  # LIGGGHTS, whose forces these are, is compared in every run
 def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(tmp_path):
     found = {steps: cluster(tmp_path / str(steps), steps) for steps in (200, 800)}
     assert_second_order(found)

@@ -247,6 +247,7 @@ def test_the_command_takes_several_restitutions_or_those_of_the_case(tmp_path):
     assert said in " ".join(curve.stdout.split())
 
 
+@pytest.mark.thorough
 def test_intervals_hold_the_true_numbers_in_95_of_100_calibrations(tmp_path):
     """Three e_n leave one degree of freedom for their scatter: one or two standard errors hold 50 and 70 %."""
     path, exact = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 2, 5, 16)

@@ -101,6 +101,7 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
     assert seen >= 15
 
 
+@pytest.mark.thorough
 @pytest.mark.liggghts
 def test_every_block_of_the_tour_runs(tmp_path):
     for page in ("tutorial", "choose", "results", "faq"):
@@ -114,7 +115,10 @@ def test_every_block_of_the_tour_runs(tmp_path):
 
 @pytest.mark.liggghts
 @pytest.mark.yade("module")
-@pytest.mark.parametrize("page", ["laws", "adhesion", "partial_slip", "yade", "scenes"])
+@pytest.mark.parametrize(
+    "page",
+    ["adhesion", "partial_slip", "yade", *(pytest.param(p, marks=pytest.mark.thorough) for p in ("laws", "scenes"))],
+)
 def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     small(tmp_path)
     for _, _, text in of("jinja", f"{page}.md"):

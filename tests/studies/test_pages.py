@@ -33,6 +33,7 @@ def play(wanted: list[tuple[str, str]], folder: Path, env: dict[str, str] | None
         assert done.returncode == 0, f"{text}\n{done.stdout}{done.stderr}"
 
 
+@pytest.mark.thorough
 def test_a_study_in_ten_minutes(tmp_path):
     play([(kind, text) for kind, text in blocks("studies") if kind != "sh slurm"], tmp_path)
     assert len(pd.read_csv(tmp_path / "runs/study/sweep.csv")) == 15 * 32

@@ -17,7 +17,7 @@ import numpy as np
 
 from . import restitution as undamped
 from .curve import Curve
-from .numerics import Array, Real, bisect, gauss, number
+from .numerics import Array, Real, bisect, gauss, number, zero
 
 RESTITUTION_MIN = 0.14  # the formula's limit for zeta -> 1 is exp(-2) = 0.135
 Rate: TypeAlias = Callable[[Array], Array]  # of states (k, n): one number or their change for each
@@ -69,8 +69,8 @@ def _first_zero(f: Rate, path: Array, g: Rate) -> Array:
     ended = np.array([g(y) <= 0 for y in path[1:]])
     start = np.where(ended.any(axis=0), ended.argmax(axis=0), len(path) - 2)
     y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
-    _, high = bisect(lambda h: g(_advance(f, y, h)) > 0, np.zeros(y.shape[1]), _STEP, steps=52)
-    return np.where(ended.any(axis=0), _advance(f, y, high), path[-1])
+    place = zero(lambda h: g(_advance(f, y, h)), np.zeros(y.shape[1]), np.full(y.shape[1], _STEP))
+    return np.where(ended.any(axis=0), _advance(f, y, place), path[-1])
 
 
 def _largest(f: Rate, path: Array, g: Rate) -> Array:
@@ -78,12 +78,16 @@ def _largest(f: Rate, path: Array, g: Rate) -> Array:
     samples = np.array([g(y) for y in path])
     start = np.maximum(samples.argmax(axis=0) - 1, 0)
     y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
-    low, high, golden = np.zeros(y.shape[1]), np.full(y.shape[1], 2 * _STEP), 0.5 * (np.sqrt(5) - 1)
-    for _ in range(40):  # the value is flat at its summit: 1e-8 of the place is 1e-16 of the value
-        left, right = high - golden * (high - low), low + golden * (high - low)
-        rises = g(_advance(f, y, left)) < g(_advance(f, y, right))
-        low, high = np.where(rises, left, low), np.where(rises, high, right)
-    return g(_advance(f, y, 0.5 * (low + high)))
+    width, golden = np.full(y.shape[1], 2 * _STEP), 0.5 * (np.sqrt(5) - 1)
+    left, right = (1 - golden) * width, golden * width
+    at_left, at_right = g(_advance(f, y, left)), g(_advance(f, y, right))
+    for _ in range(30):  # the value is flat at its summit: 1e-6 of the place is 1e-12 of the value
+        width, rises = golden * width, at_left < at_right
+        new = np.where(rises, left + golden * width, right - golden * width)
+        at_new = g(_advance(f, y, new))
+        left, right = np.where(rises, right, new), np.where(rises, new, left)
+        at_left, at_right = np.where(rises, at_right, at_new), np.where(rises, at_new, at_left)
+    return np.maximum(at_left, at_right)
 
 
 def _yielding_time(law: Curve, m: Array, start: Array, top: Array) -> Array:
