@@ -53,6 +53,7 @@ def foreign(ptx):
 
 
 @pytest.mark.slow
+@pytest.mark.packaging
 def test_every_law_and_model_is_device_code_of_its_own():
     messages, ptx = device_code((ROOT / "tests/battery/device.cu").read_text())
     assert ptx and not re.search("warning|error", messages), messages

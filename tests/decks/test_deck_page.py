@@ -49,6 +49,7 @@ def test_the_page_is_up_to_date():
     assert len(PAGE.splitlines()) < 90
 
 
+@pytest.mark.thorough
 def test_the_commands_of_the_page_run(tmp_path):
     shutil.copytree(ROOT / "cases", tmp_path / "cases")
     deck = next(text for text in re.findall(r"^```deck\n(.*?)^```$", LIGGGHTS, re.M | re.S) if "run " in text)

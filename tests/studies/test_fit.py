@@ -69,6 +69,7 @@ def test_an_interrupted_fit_goes_on_to_the_same_result(place, tmp_path):
     assert {k: v for k, v in stored(tmp_path).items() if k in before} == before
 
 
+@pytest.mark.thorough
 def test_two_targets_give_two_keys(place, caplog):
     with caplog.at_level(logging.INFO, "epdem"):
         found = calibrate(

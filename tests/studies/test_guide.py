@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from functools import partial
 
 import pandas as pd
 import pytest
@@ -34,6 +35,7 @@ FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.M | re.S)
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 ALL = [(path.name, info.split(), text) for path in PAGES for info, text in FENCE.findall(path.read_text())]
 OWN = ("upstream.md", "studies.md")  # test_plugin_upstream and test_pages run theirs
+LONG = partial(pytest.param, marks=pytest.mark.thorough)
 FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
 SMALL = {
     "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
@@ -115,10 +117,7 @@ def test_every_block_of_the_tour_runs(tmp_path):
 
 @pytest.mark.liggghts
 @pytest.mark.yade("module")
-@pytest.mark.parametrize(
-    "page",
-    ["adhesion", "partial_slip", "yade", *(pytest.param(p, marks=pytest.mark.thorough) for p in ("laws", "scenes"))],
-)
+@pytest.mark.parametrize("page", ["adhesion", "partial_slip", "yade", LONG("laws"), LONG("scenes")])
 def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     small(tmp_path)
     for _, _, text in of("jinja", f"{page}.md"):

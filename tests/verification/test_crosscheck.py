@@ -152,6 +152,7 @@ def with_speeds(case, count):
 
 @in_liggghts
 @in_yade
+@pytest.mark.thorough
 def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
     (tmp_path / "steel.toml").write_text(with_speeds(STEEL, 8))
     done = subprocess.run(
