@@ -120,7 +120,9 @@ def in_numpy(frames, radius, materials):
     return F, bed
 
 
-@pytest.mark.parametrize("name", ["E/Y 30", "unlike", "hard and soft"])
+@pytest.mark.parametrize(
+    "name", [*(pytest.param(n, marks=pytest.mark.thorough) for n in ("E/Y 30", "unlike")), "hard and soft"]
+)
 def test_forces_of_unlike_spheres_are_those_of_numpy(name, tmp_path):
     """Two bodies of two sizes, errors over the largest force: largest in steps where a contact begins."""
     cluster = two_bodies(0.5)

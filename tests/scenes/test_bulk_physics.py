@@ -106,6 +106,7 @@ def test_a_plastic_bed_rebounds_less_than_e_n_allows_and_an_elastic_one_more(law
 
 
 @pytest.mark.slow
+@pytest.mark.thorough
 def test_the_rate_of_a_hopper_grows_with_the_5_2_power_of_its_outlet(tmp_path, monkeypatch):
     """Beverloo, Leniger and van de Velde 1961: W = C rho_b sqrt(g) (D - k d)^(5/2), C about 0.58, k 1.2 to 1.6."""
     monkeypatch.syspath_prepend(str(CASES.parent / "bench"))
