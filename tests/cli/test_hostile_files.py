@@ -18,7 +18,6 @@ COMMANDS = {
     "run": (),
     "predict": (),
     "deck": ("-o", "d"),
-    "view": (),
     "soften": ("--factor", "100"),
     "verify cost": (),
     "verify crosscheck": (),

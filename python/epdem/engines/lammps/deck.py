@@ -63,10 +63,9 @@ def contact(plan: Plan, body: Body, strength: float) -> str:
 
 def check(p: ScenePlan) -> None:
     """Raise CaseError for what a scene in LAMMPS does not have."""
-    m, out = p.model, p.output
+    m = p.model
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
-    refuse("output.pictures", out.pictures, "there are none")
     for wall in (w for w in (*p.scene.planes, *p.scene.gates) if p.scene.periodic and w.axis != "z"):
         refuse(f"scene.wall.{wall.name}.axis", wall.axis, "the room is periodic there")
     for fill in p.insertions:

@@ -50,7 +50,6 @@ class Liggghts(Host):
         "wall_contacts.*.txt",
         "restart.*.bin",
         "stress_*.vtk",
-        "picture.*.ppm",
         "in.resume",
     )
 
