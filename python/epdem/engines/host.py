@@ -26,6 +26,7 @@ from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
 from ..theory.sources import Source
 from . import log
+from .restarts import choose
 
 LIGGGHTS = "use --engine liggghts"  # the engine of every scene
 
@@ -119,8 +120,14 @@ class Host(ABC):
         self.run_scene(job, folder, ranks, report)
         return self.read(job, folder)
 
+    def continue_scene(self, plan: ScenePlan, folder: Path, step: int, ranks: int, report: Report) -> None:
+        """Continue a run from the restart file of a step, of an engine with Feature.RESTART. Raises EngineError."""
+        raise NotImplementedError
+
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        raise CaseError(f"{folder}: a scene in {self.title} runs from its start; run it anew")
+        step, lost = choose(job, folder, folder / self.out, self.scene_tables.damaged)
+        self.continue_scene(job, folder, step, ranks, report)
+        return self.read(job, folder, without=lost), Resumed(step, lost)
 
 
 def impact_head(plan: Plan) -> decks.Head:

@@ -12,8 +12,6 @@ from ...base.processes import most_ranks
 from ...impacts.engine import Trajectory, check_features, oblique_pairs
 from ...impacts.plan import Plan, approach
 from ...jobs.engine import Feature, Report
-from ...jobs.stage import Tables
-from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host, impact_head
@@ -100,6 +98,6 @@ class Lammps(Host):
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=pruning(folder, report))
 
-    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        resumed = resume.resume(job, folder, ranks=ranks, report=report)
-        return self.read(job, folder, without=resumed.lost), resumed
+    def continue_scene(self, plan: ScenePlan, folder: Path, step: int, ranks: int, report: Report) -> None:
+        script = resume.write_resume(plan, folder, step)
+        launcher.run(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))

@@ -6,21 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...base import rendering as decks
-from ...jobs.engine import Report
-from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
-from ..restarts import choose, later, phase_at, pruning
-from . import launcher, tables
+from ..restarts import later, phase_at
+from . import launcher
 from .deck import Restart, SceneDeck, deck
 from .scene_walls import DeckWall, motions_again, plane
-
-
-def resume(p: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
-    """Continue a run from its newest restart file. Raises CaseError, EngineError."""
-    step, lost = choose(p, folder, folder / launcher.OUT, tables.damaged)
-    script = write_resume(p, folder, step)
-    launcher.run(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
-    return Resumed(step, lost)
 
 
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:

@@ -11,8 +11,6 @@ from ...errors import CaseError
 from ...impacts.engine import Trajectory, check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report
-from ...jobs.stage import Tables
-from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
@@ -126,6 +124,5 @@ class Liggghts(Host):
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         resume.run(plan, folder, ranks=ranks, report=report)
 
-    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        resumed = resume.resume(job, folder, ranks=ranks, report=report)
-        return self.read(job, folder, without=resumed.lost), resumed
+    def continue_scene(self, plan: ScenePlan, folder: Path, step: int, ranks: int, report: Report) -> None:
+        resume.run_on(plan, folder, step, ranks=ranks, report=report)

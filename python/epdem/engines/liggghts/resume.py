@@ -10,11 +10,10 @@ from pathlib import Path
 from ...base import rendering as decks
 from ...errors import EngineError
 from ...jobs.engine import Report
-from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from .. import log
-from ..restarts import choose, later, phase_at, pruning
-from . import launcher, tables
+from ..restarts import later, phase_at, pruning
+from . import launcher
 from .deck import SceneDeck, deck
 from .scene_parts import InsertFix
 
@@ -41,13 +40,11 @@ def _lost_walls_named(folder: Path) -> Iterator[None]:
         ) from None
 
 
-def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
-    """Continue a run from its newest restart file. Raises CaseError, EngineError."""
-    step, lost = choose(plan, folder, folder / launcher.OUT, tables.damaged)
+def run_on(plan: ScenePlan, folder: Path, step: int, *, ranks: int, report: Report) -> None:
+    """Continue a run from the restart file of a step. Raises CaseError, EngineError."""
     script = write_resume(plan, folder, step)
     with _lost_walls_named(folder):
         launcher.run(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
-    return Resumed(step, lost)
 
 
 def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[InsertFix]:
