@@ -3,6 +3,7 @@
 // are compiled for newer processors hold no inline function that others share.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "kernels/block.hpp"
@@ -38,8 +39,6 @@ class PairList {
   int count() const { return count_; }
   int i(int place) const { return i_[place]; }
   int j(int place) const { return j_[place]; }
-  /// Place of the first pair of sphere i.
-  int first(int i) const { return first_[i]; }
 
   /// Place of the pair (i, j) in the list of i; -1: it is not there.
   int find(int i, int j) const {
@@ -59,6 +58,18 @@ class PairList {
   int count_ = 0;
 };
 
+/// Has the full vectors of a block's first n contacts computed, moves the others to its begin and returns their number.
+template <class Finish>
+inline int finish_full(Block& b, int* place, int n, Finish& finish) {
+  const int left = n % most_lanes, full = n - left;
+  int others[3][most_lanes];  // `finish` pads the block behind its contacts
+  int* const numbers[] = {b.i, b.j, place};
+  for (int c = 0; c < 3; ++c) std::copy_n(numbers[c] + full, most_lanes, others[c]);
+  finish(full);
+  for (int c = 0; c < 3; ++c) std::copy_n(others[c], most_lanes, numbers[c]);
+  return left;
+}
+
 /// Writes the pairs of a search that overlap into the block, their places to `place`, and calls finish(n) for each full
 /// block.
 template <class Finish>
@@ -67,9 +78,7 @@ inline void each_overlap(const SphereKernels& kernels, PairSearch search, Block&
   int n = 0;
   while (search.tested < search.count) {
     n += kernels.next_pairs(search, b.i + n, b.j + n, place + n);
-    if (n <= block_size - pairs_at_once) continue;
-    finish(n);
-    n = 0;
+    if (n > block_size - pairs_at_once) n = finish_full(b, place, n, finish);
   }
   finish(n);
 }
@@ -91,9 +100,7 @@ inline void each_contact(const SphereKernels& kernels, PairSearch search, Block&
       b.j[n] = j;
       place[n++] = of_pair;
     }
-    if (n <= block_size - pairs_at_once) continue;
-    finish(n);
-    n = 0;
+    if (n > block_size - pairs_at_once) n = finish_full(b, place, n, finish);
   }
   finish(n);
 }

@@ -44,15 +44,17 @@ class Growth {
     const int nlocal = atom.nlocal;
     if (nlocal == 0 && atom.nghost == 0) return static_cast<void>(bodies_->do_forward_comm());
     double *sums = sums_->array_atom[0], *body = bodies_->array_atom[0];
+    double largest = 0.0;
     for (int i = 0; i < nlocal; ++i, sums += 3, body += 2) {
       body[0] = growth(sums[0], sums[1]);
+      largest = std::max(largest, body[0]);
       body[1] = sums[2];
       sums[0] = sums[1] = sums[2] = 0.0;
     }
     bodies_->do_forward_comm();
-    largest_ = 0.0;
     const double* const all = of_all();
-    for (long i = 0; i < nlocal + atom.nghost; ++i) largest_ = std::max(largest_, all[2 * i]);
+    for (long i = nlocal; i < nlocal + atom.nghost; ++i) largest = std::max(largest, all[2 * i]);
+    largest_ = largest;
   }
 
   BodySums<double> of(int body) const { return sums_of(of_all(), body); }
@@ -60,6 +62,8 @@ class Growth {
 
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
   double factor() const { return touch_factor(largest_); }
+  /// The same with room for growth until the next neighbor lists.
+  double factor_until_lists() const { return touch_factor(largest_ + 0.02); }
 
   /// Three numbers per sphere, for a loop that adds by itself as `add` does.
   double* sums() { return sums_->array_atom[0]; }

@@ -95,15 +95,32 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
                    : gather<Reach::touching>(plan);
 }
 
-void PairLoop::read_lists() {
-  if (listed_ == neighbor->lastcall) return;
+/// With growth, pairs that cannot meet before LIGGGHTS makes the next lists are left out, until a sphere grows more.
+void PairLoop::read_lists(const Growth* growth) {
+  if (listed_ == neighbor->lastcall && (!growth || growth->factor() <= listed_factor_)) return;
+  const bool narrows = growth && listed_ != neighbor->lastcall;
+  listed_factor_ = narrows ? growth->factor_until_lists() : HUGE_VAL;
   listed_ = neighbor->lastcall;
+  // no sphere moves farther than half of the skin from its place in the step of the lists
+  const double way = listed_ == update->ntimestep ? neighbor->skin : 2.0 * neighbor->skin;
+  const double *const radius = atom->radius, reach = std::sqrt(listed_factor_);
+  const auto is_far = [&](int i, int j) {
+    const double *const xi = atom->x[i], *const xj = atom->x[j], most = reach * (radius[i] + radius[j]) + way;
+    const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
+    return dx * dx + dy * dy + dz * dz > most * most;
+  };
   const LAMMPS_NS::NeighList& list = *pair_->list;
   pairs_.clear(atom->nlocal);
+  slots_.clear();
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii];
     pairs_.begin(i);
-    for (int jj = 0; jj < list.numneigh[i]; ++jj) pairs_.add(i, list.firstneigh[i][jj] & NEIGHMASK);
+    for (int jj = 0; jj < list.numneigh[i]; ++jj) {
+      const int j = list.firstneigh[i][jj] & NEIGHMASK;
+      if (narrows && is_far(i, j)) continue;
+      pairs_.add(i, j);
+      slots_.push_back(jj);
+    }
   }
   pairs_.close();
 }
@@ -112,14 +129,14 @@ void PairLoop::read_lists() {
 /// whose gap it closes; other near pairs lose their mark.
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
-  read_lists();
+  read_lists(plan.growth);
   const SphereKernels& kernels = *plan.spheres;
   const auto search = [&](double factor) { return pairs_.search(pass_.x, atom->radius, factor); };
   const auto compute_block = [&](int n) { finish<reach>(plan, n); };
   if constexpr (reach == Reach::touching) return each_overlap(kernels, search(1.0), *block_, place_, compute_block);
   const double apart = neighbor->contactDistanceFactor;
   const auto stands = [&](int i, int j, int place) {
-    const int slot = place - pairs_.first(i);
+    const int slot = slots_[place];
     int& flag = pair_->listgranhistory->firstneigh[i][slot];
     if ((reach == Reach::grown || flag != 0) && stands_across_gap(plan, i, j, slot)) return true;
     flag &= ~flags_;
@@ -156,9 +173,10 @@ void PairLoop::fetch(const Plan& plan, int n) {
   const int size = pair_->dnum(), marked = flags_;
   int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;
   double** const histories = pair_->listgranhistory ? pair_->listgranhistory->firstdouble : nullptr;
+  const int* const slots = slots_.data();
   const auto history = [=, &b](long i, int k) {
     if (!histories) return;
-    const int slot = place_[k] - pairs_.first(static_cast<int>(i));
+    const int slot = slots[place_[k]];
     double* const h = histories[i] + size * slot;
     __builtin_prefetch(h, 1);
     for (int line = 8; line < size - 8; line += 8) __builtin_prefetch(h + line, 1);
@@ -184,16 +202,17 @@ struct Beside {
   const bool gives_back;
   double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{};
   long i = 0;
-  double others[7] = {};  // what a ghost gets is computed by its owner
+  double* const others;  // seven numbers of a ghost, which its owner computes; apart: the sums stay in registers
 
-  Beside(const Block& block, const Plan& plan)
+  Beside(const Block& block, const Plan& plan, double* ghost)
       : b(block),
         dents(grown ? plan.growth->sums() : nullptr),
         work(tallies ? plan.tally->work() : nullptr),
         energy(tallies ? plan.tally->energy() : nullptr),
         loaded(tallies ? plan.tally->loaded() : nullptr),
         parted(tallies ? plan.tally->adhesive() : nullptr),
-        gives_back(tallies && plan.tally->gives_back()) {}
+        gives_back(tallies && plan.tally->gives_back()),
+        others(ghost) {}
 
   EPDEM_INLINE void begin(long body) {
     i = body;
@@ -239,7 +258,8 @@ struct Beside {
 /// Adds forces and torques in the order of the list.
 template <bool torques, bool tallies, Reach reach>
 void PairLoop::scatter(const Plan& plan, int n) {
-  Beside<tallies, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan);
+  double ghost[7] = {};
+  Beside<tallies, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan, ghost);
   scatter_pairs<torques>(*block_, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
 }
 

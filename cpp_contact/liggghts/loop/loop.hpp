@@ -61,7 +61,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void run(LAMMPS_NS::PairGran* pair, const Plan& plan, double now);
 
  private:
-  void read_lists();
+  void read_lists(const Growth* growth);
   template <Reach reach>
   void gather(const Plan& plan);
   template <Reach reach>
@@ -75,7 +75,9 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   const std::unique_ptr<Block> block_;
   int place_[block_size + most_lanes];  // in the list
   PairList pairs_;
+  std::vector<int> slots_;         // of the pairs, in the list of their first sphere
   LAMMPS_NS::bigint listed_ = -1;  // step in which LIGGGHTS made its lists
+  double listed_factor_ = 0.0;     // up to which pairs_ holds all pairs that meet
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
   int flags_ = 0;
