@@ -181,6 +181,7 @@ def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
 
 @in_liggghts
 @in_yade
+@pytest.mark.thorough
 def test_engines_that_cannot_run_the_case_are_left_out_with_their_reason(tmp_path):
     """Models of other codes do not have our dashpot."""
     (tmp_path / "steel.toml").write_text(with_speeds(CASES / "viscous_steel.toml", 3))
