@@ -44,6 +44,7 @@ ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone
 NOT_LINEAR = {"phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves"}}
 OF_ROWS = {"none", "force", "side force", "torque", "whole torque"}
 BOTH_MATERIALS_OF_WALLS = {"mixture": {"two materials"}, "bodies": {"body", "frozen body", "late body"}}
+WITHOUT_CONTACTS = set(SLOTS["output"]) - {"energy", "contacts"}
 SHARED_TYPES = {"contact": set(SLOTS["contact"]) - {"wall friction", "friction of pairs"}}  # of spheres and walls
 # Features that exclude each other, and the sentence that says so. A case with none of these is never refused.
 EXCLUDED = [
@@ -51,12 +52,16 @@ EXCLUDED = [
     (ADHESIVE | {"contact": {"cohesion"}}, "has its attraction already"),
     ({"law": {"cavity, compaction"}, "contact": {"cohesion"}}, "contacts with law.compaction have no cohesion"),
     (ADHESIVE | {"contact": {"partial slip", "partial slip 2"}}, "laws with adhesion have 'history' only"),
+    (ADHESIVE | {"measure": {"speeds of impacts"}}, "impact speeds follow from contacts without adhesion"),
     (FRAMELESS | {"measure": set(SLOTS["measure"]) - OF_ROWS}, "taken from frames"),
     (FRAMELESS | with_key("stress"), "written with the frames"),
     (FRAMELESS | with_key("wear"), "written with the frames"),
     (with_key("wear") | {"output": {"restarts"}}, "does not know the wear"),
     (NOT_LINEAR | {"output": {"restarts"}}, "only walls with linear motions"),
     ({"mixture": {"rare component first"}}, "of one sphere of steel, so that the fill has none"),
+    ({"measure": {"plastic work"}, "output": set(SLOTS["output"]) - {"energy"}}, "known with output.energy"),
+    ({"measure": {"plastic work"}, "law": {"hertz", "jkr"}}, "a law that yields"),
+    ({"measure": {"speeds of impacts"}, "output": WITHOUT_CONTACTS}, "give output.contacts"),
     ({"walls": {"plates of two worn materials"}} | BOTH_MATERIALS_OF_WALLS | SHARED_TYPES, "one value for each pair"),
 ]
 
