@@ -216,6 +216,8 @@ MEASURES = {
     "centre in a region": {"kind": "center_of_mass", "axis": "y", "region": {"x": ["-9 mm", "9 mm"]} | SLAB},
     "highest of mass": {"kind": "center_of_mass", "axis": "z"},
     "porosity": {"kind": "porosity", "region": {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["2 mm", "9 mm"]}},
+    "speeds of impacts": {"kind": "impact_speed", "bins": 4},
+    "plastic work": {"kind": "plastic_work", "bins": 4},
 }
 ROOMS = {
     "closed": {},

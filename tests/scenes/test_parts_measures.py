@@ -16,6 +16,7 @@ from scene_runs import run, write_case
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
+from epdem.laws.strengths import LawSpec
 from epdem.scenes import measures, report
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
@@ -121,12 +122,56 @@ def test_porosity_is_exact_to_a_ten_thousandth(seed, overlap, upright):
     assert curve({"kind": "porosity", "region": region}, spheres(0, places)) == [pytest.approx(1 - taken, abs=1e-4)]
 
 
+def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
+    """An elastic sphere on a wall: m v^2/2 = 8/15 E* sqrt(R) alpha^(5/2)."""
+    data = parts(measure=[{"name": "speed", "kind": "impact_speed", "bins": 2}], body=[])
+    data["law"] = {"name": "hertz"}
+    p = plan(parse(data))
+    radius, mass, overlap = 1.5e-3, 3e-5, 2e-5
+    E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    tables = {
+        "particles": pd.DataFrame({"step": [0], "id": [1], "radius": [radius], "mass": [mass], "type": [1]}),
+        "contacts": pd.DataFrame({"wall": ["floor"] * 2, "i": 1, "j": 0, "delta_max": [0.5 * overlap, overlap]}),
+    }
+    found = measures.histograms(p, tables)
+    v = math.sqrt(2 * 8 / 15 * E_star * math.sqrt(radius) * overlap**2.5 / mass)
+    assert found["number"].sum() == 1
+    assert 0.5 * (found["low"].iloc[0] + found["high"].iloc[-1]) == pytest.approx(v, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", ["hertz", "thornton"])
+def test_a_bed_of_many_radii_makes_one_law_for_each_pair_of_materials(law, monkeypatch):
+    """Hertz as above; thornton beyond first yield at alpha_y: W = W_y + pi p_y R [(alpha^2 - alpha_y^2)/2 - alpha_y/3
+    (alpha - alpha_y)], W_y = 8/15 E* sqrt(R) alpha_y^(5/2)."""
+    data = parts(measure=[{"name": "speed", "kind": "impact_speed", "bins": 2}], body=[])
+    data["law"] = {"name": "hertz"} if law == "hertz" else {"name": "thornton", "yield_pressure": "0.2 MPa"}
+    p = plan(parse(data))
+    rng, n, mass = np.random.default_rng(3), 1000, 3e-5
+    radius, overlap = rng.uniform(1e-3, 2e-3, n), rng.uniform(1e-5, 3e-5, n)
+    tables = {
+        "particles": pd.DataFrame({"id": np.arange(1, n + 1), "radius": radius, "mass": mass, "type": 1}),
+        "contacts": pd.DataFrame({"wall": "floor", "i": np.arange(1, n + 1), "j": 0, "delta_max": overlap}),
+    }
+    made, real = [], LawSpec.backbone
+    monkeypatch.setattr(LawSpec, "backbone", lambda self, **given: made.append(given) or real(self, **given))
+    found = measures.values_of(p, p.scene.measure[0], tables)
+    E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    first = overlap if law == "hertz" else (math.pi * 0.2e6 / (2 * E_star)) ** 2 * radius
+    assert (overlap >= first).all()
+    work = 8 / 15 * E_star * np.sqrt(radius) * first**2.5
+    flow = (overlap**2 - first**2) / 2 - first / 3 * (overlap - first)
+    expected = np.sqrt(2 * (work + math.pi * 0.2e6 * radius * flow) / mass)
+    assert found == pytest.approx(expected, rel=1e-9) and len(made) == 1
+
+
 @pytest.mark.parametrize(
     ("m", "output", "words"),
     [
         ({"kind": "force", "wall": "roof"}, {}, "measure.a.wall = 'roof': walls whose forces are known: floor"),
         ({"kind": "torque", "wall": "floor"}, {}, "a plane has no torque"),
         ({"kind": "count", "material": "steel"}, {}, "material = 'steel': no sphere is of it"),
+        ({"kind": "plastic_work"}, {"energy": False}, "is known with output.energy"),
+        ({"kind": "impact_speed"}, {"energy": False}, "give output.contacts"),
         ({"kind": "count"}, {"particles": 0, "energy": False}, "measures are taken from frames"),
         ({"kind": "count", "name": "time"}, {}, "measure.time: a column of the rows has this name"),
         (
@@ -148,6 +193,8 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     wanted = [
         {"name": "top", "kind": "height", "share": 1.0},
         {"name": "pressed", "kind": "force", "wall": "floor", "component": "z"},
+        {"name": "dents", "kind": "plastic_work", "bins": 5},
+        {"name": "speeds", "kind": "impact_speed", "bins": 5},
     ]
     data = parts(measure=wanted, wall=[FLOOR], fill=[BED], periodic=True, phase=[{"name": "fall", "duration": "0.1 s"}])
     outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
@@ -156,13 +203,21 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     assert found.rows["pressed"].to_list() == found.rows["floor_force_z"].to_list() and found.rows["pressed"].min() < 0
     stored = read(outcome.folder / "results.h5")
     assert (units(stored.rows)["pressed"], units(stored.measures)["top"]) == ("N", "m")
+    number = found.histograms.groupby("measure")["number"].sum()
+    assert number["dents"] == 40 and number["speeds"] >= 10
+    fastest = math.sqrt(2 * 9.81 * 0.038)
+    assert 0.3 * fastest < found.histograms.query("measure == 'speeds'")["high"].max() < 1.02 * fastest
     numbers = numbers_of(SimpleNamespace(tables=found.tables))
     assert numbers["top_last"] == found.measures["top"].iloc[-1] and "pressed_mean" in numbers
     drawn = {chart.name: chart for chart in charts(outcome)}
-    assert set(drawn) >= {"scene", "scene_measures"}
+    assert set(drawn) >= {"scene", "scene_measures", "scene_dents", "scene_speeds"}
+    (bins,) = drawn["scene_dents"].panels[0].series
+    assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
+    assert "Histograms" in write_scene_page(outcome).read_text()
     report.show(outcome, Console(width=120))
     said = capsys.readouterr().out
-    assert f" {found.measures['time'].iloc[-1]:.4g} " in said
+    dents = spheres_then.query("step == step.max()")["plastic_work"]
+    assert f"{dents.mean():.5g}" in said and f" {found.measures['time'].iloc[-1]:.4g} " in said
 
 
 @pytest.mark.liggghts

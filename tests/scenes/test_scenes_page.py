@@ -25,7 +25,7 @@ def test_the_example_runs_and_the_tables_are_read_as_shown(tmp_path, monkeypatch
         phase["duration"] = "4 ms"
     example["fill"][0]["mass"] = "0.5 g"
     example["wall"].append(PLATE | {"name": "lid", "stress": True})
-    example["measure"] = [{"name": "top", "kind": "height"}, {"name": "all", "kind": "count"}]
+    example["measure"] = [{"name": "top", "kind": "height"}, {"name": "work", "kind": "plastic_work"}]
     outcome = run(write_case(parts(**example), tmp_path), out=tmp_path / "runs/compaction_powder")
     assert outcome.passed, outcome.results.checks
     monkeypatch.chdir(tmp_path)
@@ -34,4 +34,4 @@ def test_the_example_runs_and_the_tables_are_read_as_shown(tmp_path, monkeypatch
     space: dict = {}
     exec("\n".join(lines), space)
     tables = {part: eval(part, space) for part in shown}
-    assert len(tables) == 8 and all(len(table) for table in tables.values())
+    assert len(tables) == 9 and all(len(table) for table in tables.values())

@@ -37,6 +37,7 @@ from .walls import (
 )
 
 Region = Annotated[Annotated[Upright, Tag("with")] | Annotated[Room, Tag("without")], has("diameter")]
+Bins = Annotated[int, Field(ge=2, le=1000)]
 
 
 class _Measure(Frozen):
@@ -105,7 +106,19 @@ class Porosity(_Measure):
     region: Region
 
 
-Measure = Annotated[Amount | Flow | Height | Repose | CenterOfMass | Load | Porosity, Field(discriminator="kind")]
+class Histogram(_Measure):
+    """Distribution at the end: of the plastic work of each sphere [J], or of the impact speed [m/s] of each contact.
+
+    The impact speed belongs to the head-on impact that gives the largest overlap of the contact.
+    """
+
+    kind: Literal["plastic_work", "impact_speed"]
+    bins: Bins = 30
+
+
+Measure = Annotated[
+    Amount | Flow | Height | Repose | CenterOfMass | Load | Porosity | Histogram, Field(discriminator="kind")
+]
 
 MEASURES = {
     "count": Column("", "number of spheres"),
@@ -117,6 +130,8 @@ MEASURES = {
     "force": Column("N", "force on a wall, mean over a row"),
     "torque": Column("N m", "torque on a wall, mean over a row"),
     "porosity": Column("", "void share of a region"),
+    "plastic_work": Column("J", "plastic work of each sphere"),
+    "impact_speed": Column("m/s", "speed of the head-on impact with the largest overlap of a contact"),
 }
 
 

@@ -6,6 +6,7 @@ Overlap and largest overlap of a contact come from the engine, all other quantit
 
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -239,6 +240,28 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     table = raw[contact_columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
+
+
+class BodyPairs(NamedTuple):
+    """Bodies of contacts, arrays of shape (n,): R* [m], m* [kg], radius of i [m], types of both."""
+
+    R_star: Array
+    m_star: Array
+    radius_i: Array
+    type_i: npt.NDArray[np.int64]
+    type_j: npt.NDArray[np.int64]
+
+
+def body_pairs(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> BodyPairs:
+    """The bodies of a table of contacts, from the frames of the spheres."""
+    known = spheres.groupby("id")[["radius", "mass", "type"]].first()
+    first, second = known.reindex(contacts["i"]), known.reindex(contacts["j"])
+    R_star, m_star = (
+        1.0 / (1.0 / first[name].to_numpy() + 1.0 / second[name].fillna(math.inf).to_numpy())
+        for name in ("radius", "mass")
+    )
+    type_j = np.where(contacts["j"] == 0, contacts["wall"].map(p.wall_types), second["type"]).astype(int)
+    return BodyPairs(R_star, m_star, first["radius"].to_numpy(), first["type"].to_numpy(int), type_j)
 
 
 def _unit(vectors: Array) -> Array:

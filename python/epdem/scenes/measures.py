@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Measures of a case, from the tables of any engine: loads over the rows, curves over the frames. SI."""
+"""Measures of a case, from the tables of any engine: loads over the rows, curves over the frames, histograms. SI."""
 
 import math
 
 import numpy as np
 import pandas as pd
 
-from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Load, Measure, Porosity, Repose
+from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
-from .columns import columns_of_rows
+from .columns import body_pairs, columns_of_rows, last_frame
 from .meshes import FloatArray
+from .model import pair_law
 from .plan import ScenePlan
 
 LINES = 2**16  # through a region whose porosity is measured
@@ -38,6 +39,10 @@ def refuse_measures(p: ScenePlan) -> None:
         material = getattr(m, "material", None)
         if material is not None and material not in {t.material for t in p.model.types if not t.wall}:
             raise CaseError(f"{place}.material = {material!r}: no sphere is of it")
+        if isinstance(m, Histogram) and m.kind == "plastic_work" and "plastic_work" not in p.works:
+            raise CaseError(f"{place}: the plastic work is known with output.energy and a law that yields; give them")
+        if isinstance(m, Histogram) and m.kind == "impact_speed" and (p.model.adheres or not p.contacts):
+            raise CaseError(f"{place}: impact speeds follow from contacts without adhesion; give output.contacts")
 
 
 def _inside(region: Room | Upright, x: FloatArray) -> np.ndarray:
@@ -157,13 +162,13 @@ def with_loads(p: ScenePlan, rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def curve(m: Measure, tables: dict[str, pd.DataFrame]) -> tuple[FloatArray, FloatArray]:
-    """(times [s], values) of a measure: of a force or torque in each row, of another in each frame."""
+    """(times [s], values) of a measure but a histogram: of a force or torque in each row, of another in each frame."""
     table = tables["rows" if isinstance(m, Load) else "measures"]
     return table["time"].to_numpy(float), table[m.name].to_numpy(float)
 
 
 def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame: step, time, a column for each measure but loads."""
+    """One row per frame: step, time, a column for each measure but loads and histograms."""
     spheres = tables.get("particles", pd.DataFrame({"step": np.zeros(0, int)}))  # loads need no frames
     steps = np.sort(spheres["step"].unique())
     frames = dict(tuple(spheres.groupby("step")))
@@ -184,7 +189,39 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 table[m.name] = _flow(p, m, spheres, steps)
             case Porosity():
                 table[m.name] = [_porosity(p, m, frames[step]) for step in steps]
-            case Load():
+            case Load() | Histogram():
                 pass
     table.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in p.scene.measure if m.name in table}
     return table
+
+
+def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
+    contacts = tables["contacts"]
+    largest = contacts.groupby(["wall", "i", "j"], as_index=False)["delta_max"].max()
+    both = body_pairs(p, largest, tables["particles"])
+    types = pd.DataFrame({"a": both.type_i, "b": both.type_j})
+    speeds = np.zeros(len(types))
+    for (a, b), at in types.groupby(["a", "b"]).indices.items():
+        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
+        law = spec.backbone(E_star=E_star, R_star=both.R_star[at], radius=both.radius_i[at])
+        work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
+        speeds[at] = np.sqrt(2.0 * work / both.m_star[at])
+    return speeds
+
+
+def values_of(p: ScenePlan, m: Histogram, tables: dict[str, pd.DataFrame]) -> FloatArray:
+    """Values of a histogram: the plastic work of each sphere in the last frame [J], or the impact speeds [m/s]."""
+    if m.kind == "impact_speed":
+        return _impact_speeds(p, tables)
+    return np.asarray(last_frame(tables["particles"])["plastic_work"], float)
+
+
+def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """One row per bin: measure, low, high, number."""
+    found = []
+    for m in p.scene.measure:
+        if not isinstance(m, Histogram):
+            continue
+        number, edges = np.histogram(values_of(p, m, tables), m.bins)
+        found.append(pd.DataFrame({"measure": m.name, "low": edges[:-1], "high": edges[1:], "number": number}))
+    return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["measure", "low", "high", "number"])

@@ -13,13 +13,13 @@ from rich.console import Console
 from ..base.files import claim
 from ..base.terminal import make_table, show_table, table
 from ..case.outputs import MassFlow, ReboundSpeed, Unloading
-from ..case.parts import MEASURES, Load
+from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from . import checks, stages
 from .columns import LOADS, units
-from .measures import curve
+from .measures import curve, values_of
 from .plan import ScenePlan
 from .run import SceneOutcome
 
@@ -46,12 +46,12 @@ def charts(outcome: SceneOutcome) -> list[Chart]:
     """The key figure, measures, rows against time and energy balance: each if the results have data for it."""
     tables = outcome.results.tables
     energy = [energy_balance(outcome)] if "energy_balance" in tables else []
-    return [*key(outcome.plan, tables), *measures(outcome.plan, tables), *rows(outcome), *energy]
+    return [*key(outcome.plan, tables), *measures(outcome.plan, tables), *histograms(outcome), *rows(outcome), *energy]
 
 
 def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The measures against time."""
-    found = p.scene.measure
+    found = [m for m in p.scene.measure if not isinstance(m, Histogram)]
     curves = {m.name: curve(m, tables) for m in found}
     constant = {name: y[0] for name, (_, y) in curves.items() if np.unique(y).size == 1}
     shown = [m for m in found if m.name not in constant]
@@ -105,6 +105,22 @@ def rows(outcome: SceneOutcome) -> list[Chart]:
             series.append(Series(component, table["time"].to_numpy(), table[name].to_numpy(float), colour))
         panels.append(Panel(TIME, Axis(label, known.get(names[0], "")), series))
     return _against_time(outcome.plan, "scene", "Rows against time", panels, constant)
+
+
+def histograms(outcome: SceneOutcome) -> list[Chart]:
+    """One chart for each histogram that the scene measures."""
+    title, drawn = outcome.case.case.title, []
+    for k, m in enumerate(m for m in outcome.plan.scene.measure if isinstance(m, Histogram)):
+        bins = outcome.results.tables["histograms"]
+        part = bins[bins["measure"] == m.name]
+        edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
+        heights = np.concatenate([[0], np.repeat(part["number"], 2), [0]])
+        panel = Panel(
+            Axis(m.kind, MEASURES[m.kind].unit), Axis("number"), [Series("", edges, heights, k % len(PALETTE))]
+        )
+        alt = f"Histogram of {m.kind}: {int(part['number'].sum())} values."
+        drawn.append(Chart(f"scene_{m.name}", f"{title}: {m.name}", alt, [panel], heading=f"Histogram {m.name}"))
+    return drawn
 
 
 def energy_balance(outcome: SceneOutcome) -> Chart:
@@ -374,10 +390,16 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
     heads = ("measure", "kind", "time [s]", "value", "smallest", "largest", "unit")
     shown = table("measures", heads, left=("measure", "kind"))
     for m in outcome.plan.scene.measure:
-        times, values = curve(m, tables)
+        if isinstance(m, Histogram):
+            values = values_of(outcome.plan, m, tables)
+            kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
+            time = tables["measures"]["time"].iloc[-1]
+        else:
+            times, values = curve(m, tables)
+            kind, value, time = m.kind, float(values[-1]), times[-1]
         known = values[np.isfinite(values)]
         limits = (f"{known.min():.5g}", f"{known.max():.5g}") if known.size else ("nan", "nan")
-        shown.add_row(m.name, m.kind, f"{times[-1]:.4g}", f"{values[-1]:.5g}", *limits, MEASURES[m.kind].unit)
+        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, MEASURES[m.kind].unit)
     show_table(console, shown)
 
 

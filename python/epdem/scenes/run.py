@@ -194,7 +194,7 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
         tables["stages"] = stages.table(p, tables)
     if p.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])
-        tables["measures"] = measures.curves(p, tables)
+        tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
     return tables
 
 

@@ -12,7 +12,7 @@ from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
 from . import filling, stages
-from .columns import STRAINS
+from .columns import STRAINS, body_pairs
 from .limits import dense_beds, largest_density, overlaps
 from .meshes import FloatArray, sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
@@ -78,6 +78,9 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
     """A sentence for contacts beyond small strain, for a bed without void, and for each phase whose `until` was not
     reached."""
     largest = float(tables["rows"][STRAINS[0]].iloc[-1])
+    limit = max((limit for limit in validity.FINITE_STRAIN if largest > limit), default=0.0)
+    share = _share_above(p, tables, limit) if limit and "contacts" in tables else 0.0
+    where = f" in up to {share:.3g} % of the contacts of a frame" if share else ""
     phases = tables.get("phases", pd.DataFrame(columns=["until"]))
     no_void = [
         f"scene.phase.{phase['phase']}: the run ended after step {phase['end']}, because the pressed bed has no void "
@@ -86,11 +89,23 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
     ]
     pressing = stages.warnings(p, tables) if "stages" in tables else []
     effect = PRESSED if p.model.compaction else validity.OVERESTIMATED
-    return [*validity.finite_strain(largest, effect=effect), *no_void, *pressing] + [
+    return [*validity.finite_strain(largest, where, effect), *no_void, *pressing] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
         for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
     ]
+
+
+def _share_above(p: ScenePlan, tables: dict[str, pd.DataFrame], limit: float) -> float:
+    """Largest share of the contacts of a frame whose largest strain w a/R* is above the limit [%]."""
+    contacts = tables["contacts"]
+    if contacts.empty:
+        return 0.0
+    both = body_pairs(p, contacts, tables["particles"])
+    weaker = np.array(p.model.shares())[both.type_i - 1, both.type_j - 1]
+    elastic = np.sqrt(both.R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
+    strain = weaker * np.maximum(contacts["dent_radius"], elastic) / both.R_star
+    return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
 
 
 def _time_steps(p: ScenePlan) -> list[str]:

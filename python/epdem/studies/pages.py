@@ -159,6 +159,7 @@ TABLES = [
     ("checks", "Checks", "Each number against its expected value."),
     ("energy_balance", "Energy balance", "One row for each frame."),
     ("measures", "Measures", "One row for each frame."),
+    ("histograms", "Histograms", ""),
     ("rows", "Rows", ""),
 ]
 
