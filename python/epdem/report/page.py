@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The page of a study: report.html, one self-contained file.
 
-A study hands over its parts: words, facts, charts, tables, listings. The page lays them out.
+A study hands over its parts: words, facts, charts, tables, listings, pictures. The page lays them out.
 """
 
 import math
