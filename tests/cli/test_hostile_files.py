@@ -18,6 +18,7 @@ COMMANDS = {
     "run": (),
     "predict": (),
     "deck": ("-o", "d"),
+    "view": (),
     "soften": ("--factor", "100"),
     "verify cost": (),
     "verify crosscheck": (),

@@ -78,6 +78,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"}
         | {"force": None},
     ),
+    "view a scene": (("view", "scene.toml"), {"out": "there.png", "force": None}),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "soften a scene": (("soften", "scene.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), HARDNESS),

@@ -197,6 +197,7 @@ OUTPUTS = {
     "contacts": {"rows": 20, "particles": 4, "contacts": 2},
     "restarts": {"rows": 20, "particles": 4, "restarts": 2},
     "rows alone": {"rows": 20, "particles": 0},
+    "pictures": {"rows": 20, "particles": 4, "pictures": 2, "color": "radius"},
 }
 MEASURES = {
     "none": None,

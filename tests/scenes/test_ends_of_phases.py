@@ -116,6 +116,16 @@ def test_every_phase_ends_with_a_row_and_a_frame(engine, tmp_path):
 
 
 @pytest.mark.liggghts
+def test_a_phase_that_is_not_recorded_has_no_pictures(tmp_path):
+    phases = [{"name": "a", "duration": "10 ms", "record": False}, {"name": "b", "duration": "10 ms"}]
+    data = parts(phase=phases) | {"output": {"rows": 20, "particles": 10, "pictures": 10}}
+    p = run(write_case(data, tmp_path), out=tmp_path / "out").plan
+    steps = sorted(int(path.name.split(".")[1]) for path in (tmp_path / "out").glob("picture.*.ppm"))
+    assert steps == sorted(int(path.name.split(".")[1]) for path in (tmp_path / "out").glob("particles.*.bin"))
+    assert not [n for n in steps if 0 < n < p.phases[0].end] and max(steps) == p.steps
+
+
+@pytest.mark.liggghts
 def test_the_work_of_a_vibration_that_goes_on_with_another_step(tmp_path):
     """A lid that throws spheres up: the sum of all energies is the work of the lid."""
     shake = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "1 mm"], "frequency": "60 Hz"}

@@ -2,6 +2,7 @@
 """Kinds of scenes are files: a kind of the user's own in three engines, and no kind is known below the room case."""
 
 import re
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -65,12 +66,14 @@ def test_a_kind_of_a_user_runs_and_its_torque_does_the_work(engine, mill):
 
 
 @pytest.mark.liggghts
-def test_a_kind_of_a_user_is_swept(mill):
+def test_a_kind_of_a_user_is_swept_and_viewed(mill):
     out = mill.parent / "sweep"
     found = run_sweep(plan_sweep(mill, {"scene.count": "5,10"}), out)
     assert found.passed and found.table["particles_last"].tolist() == [5, 10]
     assert found.table.attrs["units"]["torque_max"] == "N m"
     assert "torque" in write_sweep_page(found).read_text()
+    subprocess.check_call([EPDEM, "view", str(mill), "-o", str(mill.parent / "view.png")], stdout=subprocess.DEVNULL)
+    assert (mill.parent / "view.png").stat().st_size > 1000
 
 
 def test_the_file_of_a_kind_counts_from_the_case_and_goes_with_it(mill, tmp_path):

@@ -32,7 +32,7 @@ def poured() -> dict:
         "pairs": [{"between": ["glass", "wall"], "friction": 0.1}],
         "rolling": {"model": "epsd", "coefficient": 0.05, "damping": 0.3},
     }
-    output = {"rows": 20, "particles": 2, "restarts": 2, "energy": True, "loads": True}
+    output = {"rows": 20, "particles": 2, "pictures": 2, "restarts": 2, "energy": True, "loads": True}
     return data | {"scene": data["scene"] | scene, "contact": contact, "output": output, "numerics": {"error": 0.1}}
 
 
@@ -59,6 +59,9 @@ def test_a_deck_with_rare_options_runs_and_repeats_itself(data, tmp_path):
     assert [line for _, line, reason in lines if not reason] == []
     found = fingerprint(tmp_path / "deck", "in.scene")
     assert found is not None
+    written = {p.suffix for p in (tmp_path / "deck").iterdir()}
+    if "pictures" in data["output"]:
+        assert {".ppm", ".bin", ".txt"} <= written
 
 
 def test_the_walls_keep_their_material_whatever_the_order_of_types():
@@ -77,7 +80,7 @@ def test_the_walls_keep_their_material_whatever_the_order_of_types():
         (("scene", "walls"), "cheese", "add \\[materials.cheese\\]"),
         (("scene", "box"), ["1 mm", "1 mm", "1 s"], "dimension"),
         (("contact", "wall_friction"), -0.1, "must lie in"),
-        (("output", "restarts"), True, "restarts"),
+        (("output", "pictures"), True, "pictures"),
     ],
 )
 def test_mistakes_are_named_before_anything_runs(place, value, words):

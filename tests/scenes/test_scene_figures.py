@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The page of a scene: each figure once, every column that changes is drawn, no empty table."""
+"""The page of a scene: each figure once, every column that changes is drawn, no empty table, the bed with its walls."""
 
+import base64
 import re
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from parts_cases import BED, parts
@@ -65,6 +67,17 @@ def test_a_page_has_no_empty_table_and_units_of_all_columns(page):
     assert "Histograms" not in page and re.search(r">Measures</h2>", page)
     assert "<tbody>\n</tbody>" not in page
     assert "tube_force_x [N]" in page and "lid_torque_z [N m]" in page and "top [m]" in page
+
+
+@pytest.mark.liggghts
+def test_the_bed_is_the_picture_of_walls_and_spheres_with_its_scale(outcome, page):
+    """The picture in the page is the file bed.png: wall outlines (grey-blue), colour bar (all of viridis) and scale."""
+    found = re.findall(r'<img src="data:image/png;base64,([^"]+)" alt="([^"]+)"', page)
+    assert [base64.b64decode(png) for png, _ in found] == [(outcome.folder / "bed.png").read_bytes()]
+    assert "walls" in found[0][1] and "speed [m/s]" in found[0][1] and "<circle" not in page
+    image = plt.imread(outcome.folder / "bed.png")[..., :3].reshape(-1, 3)
+    shades = plt.get_cmap("viridis")(np.linspace(0, 1, 9))[:, :3]
+    assert all((np.abs(image - shade).max(axis=1) < 0.01).sum() > 50 for shade in shades)
 
 
 @pytest.mark.liggghts

@@ -191,6 +191,7 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
     ("name", "place", "value", "words"),
     [
         ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2"),
+        ("settle_glass", "output", {"pictures": 2}, r"output.pictures = 2"),
     ],
 )
 def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words):

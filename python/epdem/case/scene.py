@@ -29,7 +29,7 @@ from .outputs import MeasuredDensities
 from .parts import Parts
 from .sizes import Share, context
 from .toml import KIND, error_context, read_toml, with_library
-from .walls import Time
+from .walls import PartName, Time
 
 
 class SceneMaterial(Material):
@@ -89,7 +89,9 @@ class Output(Frozen):
     contacts: Annotated[int, Field(ge=0, le=10_000)] = 0
     energy: bool = False  # the energy balance: particles and contacts of the same steps, plastic work of every contact
     loads: bool = False  # forces on the walls
+    pictures: Annotated[int, Field(ge=0, le=10_000)] = 0
     restarts: Annotated[int, Field(ge=0, le=1000)] = 0
+    color: PartName = "speed"  # of the spheres in bed.png: a column of the frames, speed or energy
 
     @model_validator(mode="after")
     def _ledger_frames(self) -> Self:

@@ -247,6 +247,7 @@ def doctor(as_json: AsJson = False) -> None:
 
 for command in (
     cli_predict.predict,
+    cli_scene.view,
     cli_scene.soften,
     cli_calibrate.calibrate,
     cli_sweep.sweep,

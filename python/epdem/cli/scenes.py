@@ -51,6 +51,31 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], csv: bool, a
     return 0 if outcome.passed else 1
 
 
+def view(
+    case: CasePath,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="PNG file (default: NAME.png here)")] = None,
+    force: Replace = False,
+    as_json: AsJson = False,
+) -> None:
+    """Draw a scene before it runs: walls, regions, first spheres."""
+    from ..base.files import refuse_existing
+    from ..base.terminal import status
+    from ..case.scene import load
+    from ..case.toml import error_context
+    from ..scenes import pictures
+    from ..scenes.plan import plan
+
+    with error_context(case):
+        p = plan(load(case))
+        path = out or Path(f"{p.case.name}.png")
+        refuse_existing(path, force=force)
+        with status() as line:
+            line(f"{p.case.name}: walls, regions, first spheres")
+            drawn = pictures.before(p, path)
+    said = {"file": str(path), "spheres": p.count, "drawn": drawn}
+    print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.count} spheres")
+
+
 def soften(
     case: CasePath,
     factor: Annotated[

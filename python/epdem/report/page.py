@@ -4,6 +4,7 @@
 A study hands over its parts: words, facts, charts, tables, listings, pictures. The page lays them out.
 """
 
+import base64
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -72,7 +73,22 @@ class Listing:
     kind: ClassVar[str] = "text"
 
 
-Part = Facts | Rows | Listing | Chart
+@dataclass(frozen=True)
+class Picture:
+    """A PNG file; `alt` says what the picture shows."""
+
+    title: str
+    alt: str
+    file: Path
+    kind: ClassVar[str] = "picture"
+
+    @property
+    def source(self) -> str:
+        """The file in base64."""
+        return base64.b64encode(self.file.read_bytes()).decode()
+
+
+Part = Facts | Rows | Listing | Picture | Chart
 
 
 @dataclass(frozen=True)

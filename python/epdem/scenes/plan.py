@@ -126,7 +126,7 @@ class ScenePlan:
     triangles: of each wall that is not a plane, at the start, shape (n, 3 corners, 3 coordinates) [m]. loads: walls
     whose force, and if they are meshes torque, is in the rows. beds: that plates press.
     every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
-    restarts: steps between two of them, 0: none; all but restarts also at the end of a recorded phase.
+    pictures, restarts: steps between two of them, 0: none; all but restarts also at the end of a recorded phase.
     """
 
     case: SceneCase
@@ -140,6 +140,7 @@ class ScenePlan:
     sampling: int
     frames: int
     contacts: int
+    pictures: int
     restarts: int
 
     @property
@@ -174,7 +175,7 @@ class ScenePlan:
     @property
     def intervals(self) -> dict[str, int]:
         """Steps between two frames of each kind that the run writes."""
-        every = {"particles": self.frames, "contacts": self.contacts}
+        every = {"particles": self.frames, "contacts": self.contacts, "pictures": self.pictures}
         return {name: steps for name, steps in every.items() if steps}
 
     @property
@@ -430,5 +431,6 @@ def plan(case: SceneCase) -> ScenePlan:
         sampling=next(d for d in range(max(1, every // SAMPLES), 0, -1) if every % d == 0),
         frames=frames,
         contacts=contacts,
+        pictures=interval(out.pictures),
         restarts=interval(out.restarts, whole),
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The output of a scene: its charts as data, checks, summary, JSON."""
+"""The output of a scene: its charts as data, the picture of its bed, checks, summary, JSON."""
 
 import json
 import math
@@ -17,8 +17,9 @@ from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
-from . import checks, stages
-from .columns import LOADS, units
+from ..report.page import Picture
+from . import checks, pictures, stages
+from .columns import LOADS, last_frame, units
 from .measures import curve, values_of
 from .plan import ScenePlan
 from .run import SceneOutcome
@@ -142,6 +143,21 @@ def energy_balance(outcome: SceneOutcome) -> Chart:
         alt += " Friction is the remainder of the balance."
     panels = [_with_phases(outcome.plan, Panel(TIME, Axis("energy", "J"), series))]
     return Chart("energy", f"{outcome.case.case.title}: energy", alt, panels, heading="Energy balance against time")
+
+
+def bed(outcome: SceneOutcome) -> list[Picture]:
+    """The picture of walls and spheres in the last frame, drawn into the folder of the run; none without frames."""
+    table = outcome.results.tables.get("particles")
+    if table is None or table.empty:
+        return []
+    path, field = outcome.folder / "bed.png", outcome.plan.output.color
+    pictures.bed(outcome.plan, table, path)
+    frame = last_frame(table)
+    time = float(outcome.plan.time_at(frame["step"].to_numpy()[:1])[0])
+    values, of = pictures.colour(frame, field), pictures.unit_of(frame, field)
+    label = f"{field} [{of}]" if of else field
+    alt = f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
+    return [Picture("The bed", alt, file=path)]
 
 
 def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:

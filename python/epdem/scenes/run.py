@@ -20,7 +20,7 @@ from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Report, silent
 from ..jobs.stage import Inputs, Stage, Tables, compute, inputs, parts_hash, without_comments
-from . import checks, measures, results, stages
+from . import checks, measures, pictures, results, stages
 from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
@@ -116,6 +116,7 @@ def run(
     with error_context(place):
         p = plan(model)
         measures.refuse_measures(p)
+        pictures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
         notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
     check_run(engine, ranks=ranks, resume=resume)

@@ -22,9 +22,10 @@ from ..impacts.report import against_measured, largest_errors, yielding
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
 from ..report.chart import PALETTE, Axis, Chart, Panel, Series
-from ..report.page import NAME, Facts, Listing, Page, Part, Rows, write
+from ..report.page import NAME, Facts, Listing, Page, Part, Picture, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
+from ..scenes.report import bed
 from ..scenes.report import charts as charts_of_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.stages import against_measured as against_measured_densities
@@ -149,6 +150,7 @@ def _body(b: Body) -> str:
     return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
 
 
+DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
 TABLES = [
     (
         "stages",
@@ -172,8 +174,14 @@ def write_scene_page(outcome: SceneOutcome) -> Path:
 def scene_page(outcome: SceneOutcome) -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
+    shown = charts_of_scene(outcome)
+    pictures = [
+        Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
+        for path in sorted(outcome.folder.glob("*.png"))
+        if path.stem not in DRAWN and not path.stem.startswith("scene_")
+    ]
     engine = str(about["engine"])
-    parts: list[Part] = [*charts_of_scene(outcome)]
+    parts: list[Part] = [*shown[:1], *bed(outcome), *shown[1:], *pictures]
     for name, title, note in TABLES:
         table = tables.get(name)
         if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:

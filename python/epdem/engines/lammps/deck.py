@@ -63,9 +63,10 @@ def contact(plan: Plan, body: Body, strength: float) -> str:
 
 def check(p: ScenePlan) -> None:
     """Raise CaseError for what a scene in LAMMPS does not have."""
-    m = p.model
+    m, out = p.model, p.output
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
+    refuse("output.pictures", out.pictures, "there are none")
     for wall in (w for w in (*p.scene.planes, *p.scene.gates) if p.scene.periodic and w.axis != "z"):
         refuse(f"scene.wall.{wall.name}.axis", wall.axis, "the room is periodic there")
     for fill in p.insertions:

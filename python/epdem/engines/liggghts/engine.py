@@ -48,6 +48,7 @@ class Liggghts(Host):
         "wall_contacts.*.txt",
         "restart.*.bin",
         "stress_*.vtk",
+        "picture.*.ppm",
         "in.resume",
     )
 

@@ -95,6 +95,7 @@ def check(p: ScenePlan) -> None:
     unknown: dict[str, tuple[object, str]] = {
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
+        "output.pictures": (out.pictures, "YADE draws none without a display"),
     }
     for place, (value, reason) in unknown.items():
         refuse(place, value, reason)

@@ -32,7 +32,7 @@ from .points import Point, assign, keys_of
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
 STAGES = "stages.json"
-JUDGED = ("case.title", "case.source", "check", "scene.measure")  # keys that no engine reads
+JUDGED = ("case.title", "case.source", "check", "output.color", "scene.measure")  # keys that no engine reads
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 STATES = (WAITING, RUNNING, DONE, FAILED)
 

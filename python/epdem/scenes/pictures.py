@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
+
+from collections.abc import Sequence
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ..base.files import atomic
+from ..case.walls import Room
+from ..errors import CaseError
+from . import placement
+from .checks import kinetic
+from .columns import columns_of_frames, last_frame, units
+from .meshes import FloatArray, at_end, box, tube
+from .plan import Phase, ScenePlan
+
+AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
+DPI = 200
+MOST_PLACED = 4000  # spheres that are placed for the picture of a scene before its run
+WIDE = 6.0  # inches
+LABELS = 0.7, 0.8  # room of labels and title beside and above the axes [inch]
+BAR = 1.0  # room of a colour bar [inch]
+# discs of a sphere from its rim to the highlight: share of the radius, shift to the upper left over the radius, light
+# (1: its colour, 2: white)
+SHADES = [
+    (1.0, 0.0, 0.35),
+    (0.94, 0.0, 0.70),
+    (0.84, 0.04, 0.86),
+    (0.72, 0.08, 1.0),
+    (0.26, 0.34, 1.25),
+    (0.14, 0.37, 1.6),
+]
+MOST_SHADED = 20_000  # spheres with all discs
+HAZE = 0.45  # share of white in the colour of the farthest sphere
+
+
+def _axes() -> tuple[FloatArray, FloatArray]:
+    """(the picture's axes to the right and up, shape (2, 3); the direction towards the viewer)."""
+    c, s, ce, se = np.cos(AZIMUTH), np.sin(AZIMUTH), np.cos(ELEVATION), np.sin(ELEVATION)
+    towards = np.array([c * ce, s * ce, se])
+    right = np.array([-s, c, 0.0])
+    return np.stack([right, np.cross(towards, right)]), towards
+
+
+def colour(spheres: pd.DataFrame, field: str) -> pd.Series:
+    """The values of a field of each sphere: a column of the frames, "speed" [m/s] or "energy" [J].
+
+    Raises KeyError for another one.
+    """
+    if field == "speed":
+        speed: pd.Series = np.sqrt((spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1))
+        return speed
+    return kinetic(spheres) if field == "energy" else spheres[field]
+
+
+def unit_of(spheres: pd.DataFrame, field: str) -> str:
+    """The unit of `colour`."""
+    return {"speed": "m/s", "energy": "J"}.get(field, units(spheres).get(field, ""))
+
+
+def refuse_color(p: ScenePlan) -> None:
+    """Raise CaseError for a field of output.color that the frames do not hold."""
+    known = ["speed", "energy", *columns_of_frames(p)]
+    if p.output.color not in known:
+        raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
+
+
+def _corners(limits: Sequence[float]) -> FloatArray:
+    """The eight corners of a room xlo xhi ylo yhi zlo zhi [m], shape (8, 3)."""
+    return np.array([*product(limits[0:2], limits[2:4], limits[4:6])])
+
+
+def _draw_walls(axis: Any, p: ScenePlan, walls: dict[str, FloatArray], phase: Phase, *, front: bool) -> None:
+    """The triangles of `walls`, shape (n, 3 corners, 3); planes of a phase as their outline in the room."""
+    from matplotlib.collections import PolyCollection
+
+    plane, _ = _axes()
+    for triangles in walls.values():
+        outline = triangles @ plane.T
+        face, edge = (0.3, 0.4, 0.6, 0.03 if front else 0.10), (0.3, 0.4, 0.6, 0.15)
+        axis.add_collection(PolyCollection([*outline], facecolor=face, edgecolor=edge, lw=0.3))
+    if front:
+        return
+    limits = p.box
+    for w in (*p.scene.planes, *(g for g in p.scene.gates if g.name in phase.gates)):
+        flat = [*limits]
+        axis_number = "xyz".index(w.axis)
+        flat[2 * axis_number] = flat[2 * axis_number + 1] = w.at
+        square = np.unique(_corners(flat), axis=0)
+        if len(square) == 4:
+            outline = square[[0, 1, 3, 2]] @ plane.T
+            axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
+
+
+def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, color: FloatArray) -> None:
+    """Spheres as shaded discs, the nearest on top; color: red, green, blue from 0 to 1 of each, shape (n, 3)."""
+    from matplotlib.collections import EllipseCollection
+
+    plane, towards = _axes()
+    depth = x @ towards
+    order = np.argsort(depth)
+    haze = HAZE * (depth.max() - depth[order]) / max(float(np.ptp(depth)), float(radius.max()))
+    color = color[order] + haze[:, None] * (1.0 - color[order])
+    share, shift, light = np.array(SHADES if len(x) <= MOST_SHADED else SHADES[:2]).T
+    size = np.outer(2 * radius[order], share)
+    places = (x @ plane.T)[order][:, None] + (radius[order, None] * shift)[:, :, None] * np.array([-1.0, 1.0])
+    base, light = color[:, None], light[:, None]
+    shaded = np.where(light <= 1.0, base * light, 1.0 - (1.0 - base) * (2.0 - light))
+    look = {"units": "xy", "offset_transform": axis.transData, "linewidth": 0.0, "facecolor": shaded.reshape(-1, 3)}
+    angles, offsets = np.zeros(size.size), places.reshape(-1, 2)
+    axis.add_collection(EllipseCollection(size.ravel(), size.ravel(), angles, offsets=offsets, **look))
+
+
+def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any, Any]:
+    """A figure in which these places are seen, lengths in millimetres along its sides; room `beside` it [inch]."""
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import FuncFormatter
+
+    plane, _ = _axes()
+    seen = corners @ plane.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    margin = 0.04 * (high - low).max()
+    ratio = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin)
+    height = (WIDE - LABELS[0] - beside) * ratio + LABELS[1]
+    fig = Figure(figsize=(WIDE, float(np.clip(height, 2.5, 11.0))), layout="constrained")
+    axis = fig.subplots()
+    axis.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_formatter(FuncFormatter(lambda x, _: f"{1e3 * x:g}"))
+    axis.set(xlabel="[mm]", ylabel="[mm]")
+    axis.set_title(title, parse_math=False, fontsize=9)
+    return fig, axis
+
+
+def _save(fig: Any, path: Path) -> None:
+    with atomic(path) as temporary:
+        fig.savefig(temporary, dpi=DPI)
+
+
+def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
+    """Draw walls and spheres of the last frame, coloured by the field `output.color`, into the PNG file `path`.
+
+    A wall that a force drives is left out: no table holds its position.
+    """
+    from matplotlib.cm import ScalarMappable
+
+    last = last_frame(spheres)
+    x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
+    around = np.concatenate([x - radius[:, None], x + radius[:, None]])
+    fig, axis = _frame(p.case.case.title, around, beside=BAR)
+    walls = at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles)
+    _draw_walls(axis, p, walls, p.phases[-1], front=False)
+    shown = ScalarMappable(cmap="viridis")
+    _draw_spheres(axis, x, radius, shown.to_rgba(colour(last, field).to_numpy())[:, :3])
+    _draw_walls(axis, p, walls, p.phases[-1], front=True)
+    unit = unit_of(last, field)
+    fig.colorbar(shown, ax=axis, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
+    _save(fig, path)
+
+
+def before(p: ScenePlan, path: Path) -> int:
+    """Draw walls, regions to be filled and the first spheres of a scene into the PNG file `path`.
+
+    Returns the number of drawn spheres; spheres of regions are drawn only if few enough to be placed at once. Raises
+    CaseError for an ending that no picture has.
+    """
+    from matplotlib.colors import to_rgba_array
+
+    fig, axis = _frame(p.case.case.title, _corners(p.box))
+    if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
+        raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
+    _draw_walls(axis, p, p.triangles, p.phases[0], front=False)
+    for fill in p.insertions:
+        _draw_region(axis, fill.region)
+    table = _first(p)
+    if len(table):
+        colors = to_rgba_array([f"C{int(kind) - 1}" for kind in table[:, 4]])[:, :3]
+        _draw_spheres(axis, table[:, :3], table[:, 3], colors)
+    _save(fig, path)
+    return len(table)
+
+
+def _first(p: ScenePlan) -> FloatArray:
+    """(n, 5) place, radius, type of the spheres that can be placed before a run, and of single ones that come later."""
+    placed = p.count <= MOST_PLACED and bool(p.insertions)
+    alone = [b.sphere for b in p.scene.later] + ([] if placed else [*p.scene.table])
+    rows = np.array([(*s.place, s.radius, p.model.type_of(s.material)) for s in alone], float).reshape(-1, 5)
+    return np.concatenate([placement.spheres(p), rows]) if placed else rows
+
+
+def _draw_region(axis: Any, region: Any) -> None:
+    from matplotlib.collections import PolyCollection
+
+    if isinstance(region, Room):
+        faces = box(region.limits, {sign + k for sign in "-+" for k in "xyz"})
+    else:
+        faces = tube((2 * region.radius,) * 2, *region.z, closed=(True, True))
+        faces = faces + np.array([*region.center, 0.0])
+    plane, _ = _axes()
+    axis.add_collection(PolyCollection([*(faces @ plane.T)], facecolor=(0.9, 0.6, 0.1, 0.02), edgecolor="none"))
