@@ -6,14 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from epdem.base.rendering import with_reasons
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
-from epdem.engines import engine, scene_engine
+from epdem.engines import texts_with_reasons
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import Plan, plan
 from epdem.impacts.prediction import predict
-from epdem.jobs.stage import texts
 from epdem.scenes.plan import ScenePlan
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -41,9 +39,7 @@ def compare(folder: Path, name: str, text: str) -> None:
 
 def reasons(job: Plan | ScenePlan) -> list[tuple[str, str, str]]:
     """(file, line, reason) of every line of a LIGGGHTS deck that does something."""
-    with with_reasons():
-        written = texts(engine("liggghts") if isinstance(job, Plan) else scene_engine("liggghts"), job)
-    scripts = {name: text for name, text in written.items() if "in" in name.split(".")}
+    scripts = {name: text for name, text in texts_with_reasons("liggghts", job).items() if "in" in name.split(".")}
     split = [(name, *line.partition("  # ")[::2]) for name, text in scripts.items() for line in text.split("\n")]
     return [(name, line.rstrip(), reason) for name, line, reason in split if line.strip() and line[0] != "#"]
 

@@ -113,14 +113,16 @@ def test_a_write_that_fails_leaves_the_old_results(tmp_path):
 
 
 def test_every_table_is_read_back_as_it_was_written(tmp_path):
-    tables = [pd.DataFrame({"speed": [1.0, 2.0], "case": [name, "b"], "steps": [k, 3]}) for k, name in enumerate("xyz")]
+    tables = [
+        pd.DataFrame({"speed": [1.0, 2.0], "case": [name, "b"], "steps": [k, 3]}) for k, name in enumerate("xyzu")
+    ]
     written = store.Results("text", {"version": "7"})
-    written.comparison, written.impacts["law/engine"], written.predictions["law"] = tables
+    written.comparison, written.impacts["law/engine"], written.predictions["law"], written.paths["law/engine"] = tables
     written.runs["law/engine"] = {"hash": "h"}
     store.write(tmp_path / "results.h5", written)
     found = store.read(tmp_path / "results.h5")
     assert (found.case_text, found.attributes["version"], found.runs["law/engine"]["hash"]) == ("text", "7", "h")
-    read = (found.comparison, found.impacts["law/engine"], found.predictions["law"])
+    read = (found.comparison, found.impacts["law/engine"], found.predictions["law"], found.paths["law/engine"])
     for before, after in zip(tables, read, strict=True):
         pd.testing.assert_frame_equal(before, after)
     with h5py.File(tmp_path / "results.h5") as file:
@@ -136,7 +138,7 @@ def test_a_file_that_is_no_result_is_refused(tmp_path):
 def test_one_wrong_bit_in_a_column_or_a_text_is_refused(tmp_path):
     """Without HDF5's checksums the wrong number is read."""
     path, table = tmp_path / "results.h5", pd.DataFrame({"speed": np.linspace(0.1, 0.7, 7)})
-    store.write(path, store.Results("the case", {}, table, {"law/engine": table}))
+    store.write(path, store.Results("the case", {}, table, {"law/engine": table}, paths={"law/engine": table}))
     whole = path.read_bytes()
     assert store.read(path).impacts["law/engine"].equals(table)
     with h5py.File(path) as file:

@@ -84,6 +84,7 @@ def test_run_and_command_give_the_same(ball, tmp_path):
     assert found.table.attrs["units"]["force_max_theory"] == "N" and "<table" in found._repr_html_()
     picture = found.plot()
     drawn = picture.stat().st_mtime_ns
+    assert found.plot() == picture and picture.stat().st_mtime_ns == drawn  # of the same runs: not drawn again
     other = run(ball, engines="embedded", laws="hertz", out=tmp_path / "a")  # one name needs no list
     assert other.plot().stat().st_mtime_ns > drawn
 

@@ -16,8 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem import api
-from epdem.impacts.charts import main_chart
 from epdem.report import chart, page
+from epdem.studies.pages import impacts_figures as of_page
 from epdem.studies.sweep.run import SweepOutcome
 
 pytestmark = pytest.mark.figures
@@ -55,7 +55,7 @@ def folder(tmp_path_factory):
 def charts(folder):
     """The charts of the page by name."""
     found = api.run(folder / "steel.toml", engines=["embedded", "liggghts"], out=folder / "out")
-    return {"e_n": main_chart(found.outcome)}
+    return {chart.name: chart for chart in of_page(found.outcome)}
 
 
 def curves(panel: chart.Panel) -> dict[str, chart.Series]:
@@ -65,7 +65,7 @@ def curves(panel: chart.Panel) -> dict[str, chart.Series]:
 @pytest.mark.liggghts
 def test_the_page_shows_the_stored_numbers_and_theory_between_them(folder, charts):
     page = (folder / "out/report.html").read_text()
-    assert re.findall(r'data-chart="(\w+)"', page) == list(charts) == ["e_n"]
+    assert re.findall(r'data-chart="(\w+)"', page) == list(charts) == ["e_n", "errors", "loops", "force"]
     table = pd.read_csv(folder / "out/results.csv")
     above, below = map(curves, charts["e_n"].panels)
     for engine in ("embedded", "liggghts"):
@@ -106,6 +106,17 @@ def test_measured_points_are_drawn_and_their_distance_from_theory_is_said(folder
 
 
 @pytest.mark.liggghts
+def test_a_loop_begins_at_touch_reaches_its_peak_and_leaves_a_dent(charts):
+    dents = {}
+    for series in charts["loops"].panels[0].series:
+        assert max(series.x) == pytest.approx(1, abs=2e-3) and max(series.y) == pytest.approx(1, abs=2e-3)
+        dents.setdefault(series.colour, []).append(np.asarray(series.x)[-1])
+    assert len(dents) == 3 and dents[0][0] == 0 and dents[2][0] > 0.85
+    for theory, *measured in dents.values():
+        assert len(measured) == 2 and np.allclose(measured, theory, atol=0.08)  # the end lies between two points
+
+
+@pytest.mark.liggghts
 def test_the_page_stands_alone_and_says_where_its_numbers_come_from(folder, charts):
     """Nothing is loaded: no address, and url(#...) points into the page. It weighs less than half a megabyte."""
     own = text = (folder / "out/report.html").read_text()
@@ -117,8 +128,22 @@ def test_the_page_stands_alone_and_says_where_its_numbers_come_from(folder, char
     alts = re.findall(r'class="chart" data-chart="(\w+)" role="img" aria-label="([^"]{40,})"', own)
     assert [name for name, _ in alts] == list(charts)
     heads = re.findall(r'<h2 id="title\d+">([^<]+)</h2>', own)
-    assert len(set(heads)) == len(heads) > 6 and heads[0] == "Restitution against impact speed"
+    assert len(set(heads)) == len(heads) > 8 and heads[0] == "Restitution against impact speed"
     assert re.search(r"<dt>yield_pressure</dt><dd>[\de.+]+ Pa</dd>", own)
+    reasons = re.findall(r"<tr><td><code>([^<]+)</code></td><td>([^<]*)</td>", own)
+    assert ("units si", "guard: the default, stated explicitly") in reasons
+    assert sum(bool(why) for _, why in reasons) > 15 and any("ep/thornton" in line for line, why in reasons if why)
+
+
+@pytest.mark.liggghts
+def test_a_page_of_the_same_results_and_command_is_left_as_it_is(folder):
+    place = folder / "out/report.html"
+    before = place.stat().st_mtime_ns
+    words = ("-e", "embedded", "-e", "liggghts", "--format", "svg", "--format", "png")
+    run(folder, *words)
+    assert place.stat().st_mtime_ns == before
+    run(folder, *words, "--full")
+    assert place.stat().st_mtime_ns > before
 
 
 @pytest.mark.liggghts
@@ -200,6 +225,18 @@ def test_a_long_table_is_cut_and_says_so():
     rows = page.Rows("x", pd.DataFrame({"a": np.arange(20_000), "b": 0.5}))
     assert len(rows.cells()) == 6000 and "first 6000 of 20000 rows" in rows.notes
     assert rows.cells()[1] == [("1", "1.0"), ("0.5", "0.5")]
+
+
+def test_a_page_is_written_again_for_another_mark_alone(tmp_path):
+    made = []
+
+    def results(name: str) -> page.Page:
+        made.append(name)
+        return page.Page(name, ["x"], [])
+
+    for name, mark in (("one", "a1"), ("again", "a1"), ("two", "b2"), ("three", "")):
+        page.write(tmp_path / "report.html", lambda name=name: results(name), mark=mark)
+    assert made == ["one", "two", "three"] and "three" in (tmp_path / "report.html").read_text()
 
 
 def test_figures_need_no_backend(tmp_path, monkeypatch):

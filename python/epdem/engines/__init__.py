@@ -2,9 +2,13 @@
 """The engines by name. A new engine is a module here and one line below."""
 
 from ..base.paths import DEFAULT_ENGINE
+from ..base.rendering import with_reasons
 from ..errors import CaseError
 from ..impacts.engine import ImpactEngine, Trajectory
+from ..impacts.plan import Plan
+from ..jobs.stage import texts
 from ..scenes.engine import SceneEngine
+from ..scenes.plan import ScenePlan
 from .embedded import Embedded
 from .lammps.engine import Lammps
 from .liggghts.engine import Liggghts
@@ -32,6 +36,14 @@ def scene_engine(name: str) -> SceneEngine:
     return SCENES[name]()
 
 
+def texts_with_reasons(name: str, job: Plan | ScenePlan) -> dict[str, str]:
+    """The text files of a deck with the reason of each line as its comment; empty for templates without reasons."""
+    if name != DEFAULT_ENGINE:
+        return {}
+    with with_reasons():
+        return texts(engine(name), job) if isinstance(job, Plan) else texts(scene_engine(name), job)
+
+
 __all__ = [
     "DEFAULT_ENGINE",
     "ENGINES",
@@ -40,4 +52,5 @@ __all__ = [
     "Trajectory",
     "engine",
     "scene_engine",
+    "texts_with_reasons",
 ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Figures of a run of impacts as data: restitution or slip, and the errors."""
+"""Figures of a run of impacts as data: restitution, errors, loops, forces, slip."""
 
 import math
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..theory.restitution import wu
 from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
 from . import oblique
+from .comparison import CHECKED
 from .experiment import Experiment
 from .prediction import Prediction, predict
 from .run import Outcome
@@ -110,6 +111,78 @@ def _beside_fit(fit: float, lines: list[tuple[Experiment, Prediction]]) -> str:
             f"{radius**2 / (x.R_star * top):.1f} pi R* alpha;"
         )
     return f"{said[:-1]}, which is 2 pi R* alpha in the fully plastic contact of the fit."
+
+
+def errors(outcome: Outcome) -> Chart:
+    """The errors of all checked quantities against speed, largest over the phases."""
+    rows, series = outcome.results.comparison, []
+    for k, ((engine, law), part) in enumerate(rows.groupby(["engine", "law"], sort=False)):
+        for i, name in enumerate(CHECKED):
+            values = _visible(part[f"{name}_error"])
+            label = f"{name}, {engine}" + (f", {law}" if rows["law"].nunique() > 1 else "")
+            series.append(Series(label, part["speed"].to_numpy(), values, i, None, k))
+    worst = ", ".join(f"{name} {rows[name + '_error'].max():.1e}" for name in CHECKED)
+    return Chart(
+        "errors",
+        "Errors against theory",
+        f"Largest error over the starting phases against impact speed, for each checked quantity: {worst}. Zeros are "
+        "not on the logarithmic axis.",
+        [Panel(SPEED, Axis("error, largest over phases", log=True), series)],
+    )
+
+
+def loops(outcome: Outcome) -> list[Chart]:
+    """Force against overlap and against time of the chosen impacts, with the theory of the first law."""
+    found = {key: table for key, table in outcome.results.paths.items() if len(table)}
+    if not found:
+        return []
+    law = next(iter(found)).split("/")[0]
+    speeds = np.unique(next(iter(found.values()))["speed"])
+    prediction = predict(replace(outcome.plans[law].experiment, speed=speeds, oblique=None))
+    by_overlap, by_time = _theory_loops(outcome.plans[law].experiment, prediction), []
+    for k, (key, table) in enumerate(found.items()):
+        for i, (speed, part) in enumerate(table.groupby("speed")):
+            name = key.split("/")[1] if len(outcome.plans) == 1 else ", ".join(reversed(key.split("/")))
+            top, observation_time = prediction.overlap_max[i], prediction.duration[i]
+            force = part["force"] / prediction.force_max[i]
+            thin = slice(None, None, max(1, len(part) // 40))
+            once = "" if i else name
+            by_overlap.append(Series(once, part["overlap"][thin] / top, force[thin], i, None, k))
+            named = f"{name}, {speed:.3g} m/s" if k == 0 else once
+            by_time.append(Series(named, part["time"] / observation_time, force, i, "solid" if k == 0 else "dot"))
+    said = ", ".join(f"{v:.3g}" for v in speeds)
+    force_axis = Axis("force / force_max")
+    return [
+        Chart(
+            "loops",
+            "Force against overlap",
+            f"Loading and unloading at {said} m/s: theory as lines, engines as points, over the largest of "
+            "theory. The energy between the two "
+            "branches is lost.",
+            [Panel(Axis("overlap / overlap_max"), force_axis, by_overlap)],
+        ),
+        Chart(
+            "force",
+            "Force against time",
+            f"Contact force from first touch to the end of the contact at {said} m/s, as the engines compute it, "
+            "over the peak and the contact time of theory.",
+            [Panel(Axis("time / contact_time"), force_axis, by_time)],
+        ),
+    ]
+
+
+def _theory_loops(x: Experiment, prediction: Prediction) -> list[Series]:
+    """Loading and unloading of theory at each speed; none with adhesion or a dashpot."""
+    if x.law.adheres or x.viscous_restitution is not None:
+        return []
+    law, series = x.backbone(), []
+    for k, (speed, top) in enumerate(zip(prediction.speed, prediction.overlap_max, strict=True)):
+        up = np.linspace(0.0, 1.0, 120)[1:] * top
+        down = np.linspace(float(law.residual_overlap(top)), top, 120)[::-1]
+        force = np.concatenate([law.force(up), law.unloading_force(down, np.full(down.shape, top))])
+        overlap = np.concatenate([up, down]) / top
+        series.append(Series(f"theory, {speed:.3g} m/s", overlap, force / prediction.force_max[k], k))
+    return series
 
 
 def _slip_line(x: Experiment, speed: float, psi_1: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

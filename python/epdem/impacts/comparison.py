@@ -36,11 +36,14 @@ COLUMNS = {
     "spin": Column("rad/s", "angular velocity after the impact"),
     "psi_1": Column("", "slip before the impact over the speed, times kappa/mu"),
     "psi_2": Column("", "slip after the impact over the speed, times kappa/mu"),
-    # theory
+    # theory and paths
     "radius_max": Column("m", "largest contact radius"),
     "work_in": Column("J", "work of the loading"),
     "work_out": Column("J", "work of the unloading"),
     "plastic_work": Column("J", "plastic work"),
+    "time": Column("s", "time since the start"),
+    "overlap": Column("m", "overlap"),
+    "force": Column("N", "normal force"),
 }
 UNITS = {name: column.unit for name, column in COLUMNS.items() if column.unit}
 

@@ -4,11 +4,15 @@
 from dataclasses import dataclass, fields
 
 import numpy as np
+import pandas as pd
 
 from ..errors import EngineError
 from . import oblique
 from .engine import Trajectory
 from .plan import Plan
+
+CHOSEN = 3  # speeds: the lowest, that in the middle, the highest
+SAMPLES = 200  # of each, about
 
 
 @dataclass(frozen=True)
@@ -120,3 +124,22 @@ def _with_adhesion(plan: Plan, path: Trajectory) -> Measurement:
         energy_residual=np.where(stuck, nothing, (np.nansum(work, axis=1) - lost) / (0.5 * x.m_star * plan.speed**2)),
         steps_in_contact=loaded.sum(axis=1),
     )
+
+
+def sample_impacts(plan: Plan, path: Trajectory) -> pd.DataFrame:
+    """speed [m/s], time [s] since first touch, overlap [m], force [N] of the first phase at the chosen speeds.
+
+    From the sample before the contact to that after it; at most 2 SAMPLES a speed.
+    """
+    _, first = np.unique(plan.speed, return_index=True)
+    places = np.unique(np.linspace(0, first.size - 1, CHOSEN).round().astype(int))
+    tables = []
+    for row in first[places]:
+        force = path.force[row]
+        loaded = np.flatnonzero(np.isfinite(force) & (force != 0))
+        begin, end = max(loaded[0] - 1, 0), min(loaded[-1] + 2, np.isfinite(force).sum())
+        kept = np.arange(begin, end)[:: max(1, (end - begin) // SAMPLES)]
+        time = kept * path.time_step - plan.gap[row] / plan.speed[row]
+        columns = {"speed": plan.speed[row], "time": time, "overlap": path.overlap[row, kept], "force": force[kept]}
+        tables.append(pd.DataFrame(columns))
+    return pd.concat(tables, ignore_index=True)

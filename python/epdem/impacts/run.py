@@ -22,7 +22,7 @@ from . import store
 from .comparison import compare, impacts_table
 from .engine import ImpactEngine, Trajectory, check_plan
 from .experiment import Experiment, experiment
-from .measurement import measure
+from .measurement import measure, sample_impacts
 from .plan import Plan, plan
 from .prediction import Prediction, predict
 
@@ -49,16 +49,16 @@ class Outcome:
 def run_plan(
     p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, version: str = "", stored: Stage | None = None
 ) -> Stage:
-    """The table `impacts` of a plan (see `impacts_table`): the `stored` one, or that of a run in `folder`.
+    """Tables `impacts` (see `impacts_table`) and `paths` (chosen impacts step by step) of a plan: the `stored` ones, or
+    those of a run in `folder`.
 
     version: of the engine, for results that are stored. Raises EngineError, and CaseError for what the engine cannot
     do.
     """
 
     def read(path: Trajectory) -> tuple[Tables, dict[str, float]]:
-        return {"impacts": impacts_table(p, measure(p, path))}, {
-            f"seconds_{name}": seconds for name, seconds in path.seconds.items()
-        }
+        tables = {"impacts": impacts_table(p, measure(p, path)), "paths": sample_impacts(p, path)}
+        return tables, {f"seconds_{name}": seconds for name, seconds in path.seconds.items()}
 
     return compute(tool, p, folder, read, version=version, facts=_facts(p), ranks=ranks, stored=stored)
 
@@ -92,8 +92,9 @@ def _stage(results: store.Results, key: str) -> Stage | None:
     about = results.runs.get(key)
     if about is None:
         return None
+    tables = {"impacts": results.impacts[key], "paths": results.paths[key]}
     seconds = {name: float(str(value)) for name, value in about.items() if name.startswith("seconds")}
-    return Stage(Inputs({}, str(about.get("inputs"))), {"impacts": results.impacts[key]}, seconds)
+    return Stage(Inputs({}, str(about.get("inputs"))), tables, seconds)
 
 
 def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
@@ -110,6 +111,7 @@ def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
         old.predictions | results.predictions,
         {k: old.runs[k] for k in keep} | results.runs,
         {k: v for k, v in old.decks.items() if k.rsplit("/", 1)[0] in keep} | results.decks,
+        {k: old.paths[k] for k in keep} | results.paths,
     )
 
 
@@ -197,7 +199,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
             stored_stage = None if fresh else _stage(old, key)
             version = work.versions[tool.name]
             stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks, version=version, stored=stored_stage)
-            results.impacts[key] = stage.tables["impacts"]
+            results.impacts[key], results.paths[key] = stage.tables["impacts"], stage.tables["paths"]
             results.runs[key] = stage.seconds | {"inputs": stage.inputs.key, "time_step": p.time_step} | work.how
             decks = {Path(name).name: text for name, text in stage.inputs.files.items() if not name.endswith(".data")}
             results.decks |= {f"{key}/{name}": text for name, text in decks.items()}

@@ -12,7 +12,7 @@ from .comparison import UNITS
 
 @dataclass
 class Results:
-    """Results of a run. Tables are DataFrames, keyed "law/engine" (impacts) or "law" (predictions).
+    """Results of a run. Tables are DataFrames, keyed "law/engine" (impacts, paths) or "law" (predictions).
 
     attributes: of the file (case name, versions); runs: of each law/engine (hash of its inputs, seconds).
     """
@@ -24,6 +24,7 @@ class Results:
     predictions: dict[str, pd.DataFrame] = field(default_factory=dict)
     runs: dict[str, dict[str, object]] = field(default_factory=dict)
     decks: dict[str, str] = field(default_factory=dict)
+    paths: dict[str, pd.DataFrame] = field(default_factory=dict)
 
 
 def write(path: Path, results: Results) -> None:
@@ -33,7 +34,7 @@ def write(path: Path, results: Results) -> None:
     h5.write_attributes(file, results.attributes)
     h5.write_text(file, "case", results.case_text)
     h5.write_table(file.create_group("comparison"), results.comparison, UNITS)
-    for kind, tables in (("impacts", results.impacts), ("predictions", results.predictions)):
+    for kind, tables in (("impacts", results.impacts), ("predictions", results.predictions), ("paths", results.paths)):
         for key, table in tables.items():
             h5.write_table(file.create_group(f"{kind}/{key}"), table, UNITS)
     for key, about in results.runs.items():
@@ -54,6 +55,7 @@ def read(path: Path | str) -> Results:
             for engine, group in engines.items():
                 key = f"{law}/{engine}"
                 results.impacts[key] = h5.read_table(group)
+                results.paths[key] = h5.read_table(file[f"paths/{key}"])
                 results.runs[key] = {k: v for k, v in h5.attributes(group).items() if k != "columns"}
                 for name, text in file.get(f"decks/{key}", {}).items():
                     results.decks[f"{key}/{name}"] = h5.read_text(text)

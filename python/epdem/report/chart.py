@@ -123,10 +123,12 @@ VARIABLES = {"#000000": "ink", "#0072b2": "blue", "#8c564b": "brown"}  # of a pa
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-def save(chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True) -> list[Path]:
+def save(
+    chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True, comment: str = ""
+) -> list[Path]:
     """Draw a chart into `folder`, a file of each of `formats`, and write its `data` as CSV; their paths.
 
-    The caller keeps the folder (`claim`).
+    `comment` is stored in a PNG file. The caller keeps the folder (`claim`).
     """
     from matplotlib import rc_context
 
@@ -135,8 +137,9 @@ def save(chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data:
         paths = []
         for kind in formats:
             path = folder / f"{chart.name}.{kind}"
+            about = BARE_DATE[kind] | ({"Comment": comment} if comment and kind == "png" else {})
             with atomic(path) as temporary:
-                figure.savefig(temporary, dpi=130, format=kind, metadata=BARE_DATE[kind])
+                figure.savefig(temporary, dpi=130, format=kind, metadata=about)
             paths.append(path)
     return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
 

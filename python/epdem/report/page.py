@@ -6,7 +6,7 @@ A study hands over its parts: words, facts, charts, tables, listings, pictures. 
 
 import base64
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -22,6 +22,7 @@ if TYPE_CHECKING:  # slow to import
 
 NAME = "report.html"
 MOST_CELLS = 12_000  # of a table: about 0.8 MB
+HEAD = 4096  # bytes in which the mark of a page stands
 
 
 @dataclass(frozen=True)
@@ -65,12 +66,12 @@ class Rows:
 
 
 @dataclass(frozen=True)
-class Listing:
-    """Text of a file, folded up."""
+class Lines:
+    """Lines of a file, with the reason of each; folded up."""
 
     title: str
-    text: str
-    kind: ClassVar[str] = "text"
+    lines: list[tuple[str, str]]
+    kind: ClassVar[str] = "lines"
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class Picture:
         return base64.b64encode(self.file.read_bytes()).decode()
 
 
-Part = Facts | Rows | Listing | Picture | Chart
+Part = Facts | Rows | Lines | Picture | Chart
 
 
 @dataclass(frozen=True)
@@ -135,13 +136,21 @@ def _templates() -> "jinja2.Environment":
     )
 
 
-def render(page: Page) -> str:
+def render(page: Page, mark: str = "") -> str:
     """The page as HTML."""
-    return _templates().get_template("page.html.j2").render(page=page, drawn=svg, version=__version__)
+    template = _templates().get_template("page.html.j2")
+    return template.render(page=page, mark=mark, drawn=svg, version=__version__)
 
 
-def write(path: Path, page: Page) -> Path:
-    """Write a page to `path`; the caller claims the folder."""
+def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:
+    """Write the page that `page()` returns to `path`, unless a page with this mark is there.
+
+    The caller claims the folder. mark: hash of the results that the page shows.
+    """
+    if mark and path.exists():
+        with path.open("rb") as stream:
+            if f'content="{mark}"'.encode() in stream.read(HEAD):
+                return path
     with atomic(path, sync=False) as temporary:
-        temporary.write_text(render(page), encoding="utf-8")
+        temporary.write_text(render(page(), mark), encoding="utf-8")
     return path

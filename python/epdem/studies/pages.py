@@ -13,18 +13,21 @@ from ..base import __version__
 from ..base.files import claim
 from ..base.paths import library_hash, product_hash
 from ..base.tables import unit_of
+from ..engines import texts_with_reasons
 from ..engines.citations import citations
 from ..impacts import charts
 from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
-from ..impacts.report import against_measured, largest_errors, yielding
+from ..impacts.plan import Plan
+from ..impacts.report import against_measured, largest_errors, mark, yielding
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
 from ..report.chart import PALETTE, Axis, Chart, Panel, Series
-from ..report.page import NAME, Facts, Listing, Page, Part, Picture, Rows, write
+from ..report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
+from ..scenes.plan import ScenePlan
 from ..scenes.report import bed
 from ..scenes.report import charts as charts_of_scene
 from ..scenes.run import SceneOutcome
@@ -40,9 +43,21 @@ def command() -> str:
     return shlex.join(["epdem", *sys.argv[1:]]) if name == "epdem" else ""
 
 
-def case_listing(text: str) -> Listing:
+def case_lines(text: str) -> Lines:
     """The case file."""
-    return Listing("Case file", text)
+    return Lines("Case file", [(line, "") for line in text.splitlines()])
+
+
+def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], of: str = "") -> list[Lines]:
+    """The `stored` scripts of a deck by name, line by line with their comments; with the reasons of the engine's
+    templates if the job is known. of: end of the titles."""
+    texts = {name: text for name, text in stored.items() if name.startswith("in.") or name.endswith((".in", ".py"))}
+    texts |= {name: text for name, text in (texts_with_reasons(engine, job) if job else {}).items() if name in texts}
+    return [
+        Lines(f"Deck {name}{of}", [(command.rstrip(), why) for command, _, why in split])
+        for name, text in texts.items()
+        for split in [[line.partition("  # ") for line in text.splitlines()]]
+    ]
 
 
 def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
@@ -60,11 +75,12 @@ def page_of(
     hashes: Mapping[str, object],
     laws: Sequence[str],
     engines: Sequence[str],
+    command: str,
 ) -> Page:
     """The page of a case: these parts, then versions, `hashes` of the inputs by run, and what to cite."""
     cited = Facts("What to cite", citations(outcome.case, laws, engines))
     every = [*parts, origin(outcome.results.attributes, hashes), cited]
-    said = command() or f"epdem verify rerun {outcome.folder}/results.h5"
+    said = command or f"epdem verify rerun {outcome.folder}/results.h5"
     title = outcome.case.case.title
     return Page(title, sentences, every, passed=outcome.passed, command=said, warnings=outcome.warnings)
 
@@ -72,7 +88,7 @@ def page_of(
 def write_study_page(page: Page, folder: Path) -> Path:
     """Write a page into the folder of its study; its path."""
     with claim(folder, force=True):
-        return write(folder / NAME, page)
+        return write(folder / NAME, lambda: page)
 
 
 COMPARED = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("", "_theory", "_error")))
@@ -81,17 +97,20 @@ OBLIQUE = ("angle", "spin_before", "e_t", "e_t_theory", "psi_1", "psi_2", "psi_2
 
 def write_impacts_page(outcome: Outcome) -> Path:
     """Write report.html into the folder of a run; its path."""
-    return write_study_page(impacts_page(outcome), outcome.folder)
+    said = command()
+    with claim(outcome.folder, force=True):
+        digest = mark(outcome, said, NAME)
+        return write(outcome.folder / NAME, lambda: impacts_page(outcome, said), mark=digest)
 
 
-def impacts_page(outcome: Outcome) -> Page:
+def impacts_page(outcome: Outcome, command: str = "") -> Page:
     """The page of a run."""
     results, several = outcome.results, len(outcome.plans) > 1
-    parts: list[Part] = [charts.main_chart(outcome), impacts_table(outcome)]
+    parts: list[Part] = [*impacts_figures(outcome), impacts_table(outcome)]
     for law, p in outcome.plans.items():
         parts.append(Facts("Bodies and law" + f" {law}" * several, _impact_facts(p.experiment)))
     allowed = {name: f"{value:g}" for name, value in outcome.case.check.model_dump().items()}
-    parts += [Facts("Tolerances of the case", allowed), case_listing(results.case_text)]
+    parts += [Facts("Tolerances of the case", allowed), case_lines(results.case_text), *impacts_decks(outcome)]
     return page_of(
         outcome,
         impacts_sentences(outcome),
@@ -99,6 +118,7 @@ def impacts_page(outcome: Outcome) -> Page:
         hashes={key: run["inputs"] for key, run in results.runs.items()},
         laws=list(outcome.plans),
         engines=list(dict.fromkeys(results.comparison["engine"])),
+        command=command,
     )
 
 
@@ -119,6 +139,11 @@ def impacts_sentences(outcome: Outcome) -> list[str]:
     if residual == residual:
         said.append(f"The energy balance of an impact closes within {residual:.1e} of its kinetic energy.")
     return said
+
+
+def impacts_figures(outcome: Outcome) -> list[Chart]:
+    """The figures of the page."""
+    return [charts.main_chart(outcome), charts.errors(outcome), *charts.loops(outcome)]
 
 
 def impacts_table(outcome: Outcome) -> Rows:
@@ -150,6 +175,19 @@ def _body(b: Body) -> str:
     return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
 
 
+def impacts_decks(outcome: Outcome) -> list[Lines]:
+    """Every deck that ran, line by line, with the reasons that the templates of the engine state."""
+    stored: dict[tuple[str, str], dict[str, str]] = {}
+    for key, text in outcome.results.decks.items():
+        law, engine, name = key.split("/", 2)
+        stored.setdefault((law, engine), {})[name] = text
+    return [
+        lines
+        for (law, engine), texts in stored.items()
+        for lines in decks(engine, outcome.plans.get(law), texts, f" of {engine}, law {law}")
+    ]
+
+
 DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
 TABLES = [
     (
@@ -168,10 +206,11 @@ TABLES = [
 
 def write_scene_page(outcome: SceneOutcome) -> Path:
     """Write report.html into the folder of a scene; its path."""
-    return write_study_page(scene_page(outcome), outcome.folder)
+    with claim(outcome.folder, force=True):
+        return write(outcome.folder / NAME, lambda: scene_page(outcome, command()))
 
 
-def scene_page(outcome: SceneOutcome) -> Page:
+def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
     shown = charts_of_scene(outcome)
@@ -186,7 +225,8 @@ def scene_page(outcome: SceneOutcome) -> Page:
         table = tables.get(name)
         if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:
             parts.append(Rows(title, table, units(table), note))
-    parts += [_scene_facts(outcome), case_listing(outcome.results.case_text)]
+    listings = decks(engine, outcome.plan, outcome.results.decks)
+    parts += [_scene_facts(outcome), case_lines(outcome.results.case_text), *listings]
     return page_of(
         outcome,
         scene_sentences(outcome),
@@ -194,6 +234,7 @@ def scene_page(outcome: SceneOutcome) -> Page:
         hashes={engine: about["inputs"]},
         laws=[outcome.plan.model.law],
         engines=[engine],
+        command=command,
     )
 
 
@@ -240,7 +281,7 @@ def write_sweep_page(result: SweepOutcome, found: Sequence[str] = ()) -> Path:
     parts += [Rows("Failed points", failed)] if len(failed) else []
     rows = table.drop(columns=["folder", "reason"])
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
-    parts += [case_listing(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
+    parts += [case_lines(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
     title = f"Sweep of {sweep.name}"
     page = Page(title, [said, *found], parts, passed=result.passed, command=command(), warnings=result.warnings)
     return write_study_page(page, result.folder)

@@ -23,7 +23,7 @@ LABELS = {"e_n": "e_n", "dent_width": "width of the dent [m]"}
 
 def of_crosscheck(check: Crosscheck) -> Path:
     """Write the page of a run on all engines with the table of models in front."""
-    base = common.impacts_page(check.outcome)
+    base = common.impacts_page(check.outcome, common.command())
     models = len(check.table) - 1
     said = [f"{models} models ran the case; their values are those at {check.table['speed'].iloc[0]:.4g} m/s."]
     if check.others_outside:
@@ -64,7 +64,8 @@ def of_stability(outcome: Stability, path: Path) -> Path:
     parts: list[Part] = [Rows(title, table) for title, table in tables.items() if not table.empty]
     count = verdicts["status"].value_counts()
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
-    return write(path, _study_page("Stiff and extreme cases", said, parts, passed=outcome.passed))
+    page = _study_page("Stiff and extreme cases", said, parts, passed=outcome.passed)
+    return write(path, lambda: page)
 
 
 def validation_chart(v: Validation) -> Chart:
