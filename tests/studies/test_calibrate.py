@@ -26,8 +26,7 @@ from epdem.studies.calibrate import (
     summary,
 )
 from epdem.theory.adhesion import yield_speed
-from epdem.theory.indentation import Indentation
-from studies.test_soften import CASES, RATE, STEEL, with_law
+from studies.test_soften import CASES, STEEL, with_law
 
 
 @pytest.mark.parametrize("law", sorted(n for n, info in declarations().items() if info.parameters and not info.adheres))
@@ -51,16 +50,6 @@ def test_the_strength_of_an_adhesive_law_is_found_from_e_n(tmp_path):
     found = from_restitution(path, e_n, 3.0)
     assert math.isclose(found.value, min(x.law.strengths), rel_tol=1e-7)
     assert math.isclose(found.yield_speed, float(yield_speed(x.theory(), m_star=x.m_star)), rel_tol=1e-6)
-
-
-def test_the_strength_that_grows_with_the_rate_is_found_at_the_rate_of_the_measurement(tmp_path):
-    """A case with [rate] and one speed: the strength of its file is that at the reference rate."""
-    path = tmp_path / "rated.toml"
-    text = re.sub(r"speeds = .*", 'speeds = ["3 m/s"]', STEEL.read_text())
-    path.write_text(f"{text}\n{RATE}")
-    e_n = float(predict(experiment(load(path))).e_n[0])
-    assert math.isclose(from_restitution(path, e_n, 3.0).yield_stress, 1e9, rel_tol=1e-7)
-    assert from_hardness(path, Indentation(2.8e9, 0.36), "HV").value == pytest.approx(2.8e9, rel=2e-3)
 
 
 def pyramid_of_the_cavity(E, nu, slope):

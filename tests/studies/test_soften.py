@@ -52,26 +52,12 @@ def test_the_twin_keeps_e_n_of_every_speed_while_contacts_last_longer(law, facto
     assert math.isclose(twin.time_step_factor, factor**0.4)
 
 
-RATE = "[rate]\nsensitivity = 0.05\n"
-
-
 def with_option(tmp_path, text):
     """The steel case with cavity and an option, and the same without it."""
     path = with_law(tmp_path, "cavity")
     plain = predict(experiment(load(path)))
     path.write_text(re.sub(r"\n+\[numerics\]", f"\n{text}\n[numerics]", path.read_text()))
     return path, plain
-
-
-@pytest.mark.parametrize("text", [RATE, RATE + 'reference = "2 1/s"'])
-def test_the_twin_keeps_e_n_where_the_strength_depends_on_the_rate(text, tmp_path):
-    """The strain rate 0.2 v/a falls as k^-0.2."""
-    path, plain = with_option(tmp_path, text)
-    soft, twin = tmp_path / "soft.toml", soften(path, 10.0)
-    soft.write_text(twin.text)
-    hard, now = predict(experiment(load(path))), predict(experiment(load(soft)))
-    assert np.abs(now.e_n / hard.e_n - 1).max() < 1e-10 and twin.e_n_change == 0.0
-    assert np.abs(plain.e_n / hard.e_n - 1).max() > 1e-3
 
 
 @pytest.mark.parametrize("c", [0.82, 0.5])

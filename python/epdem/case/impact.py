@@ -119,17 +119,6 @@ class Impact(Frozen):
         return np.array([axis.ravel() for axis in grid])
 
 
-class Rate(Frozen):
-    """Strength that grows with the strain rate: times 1 + sensitivity ln(rate/reference).
-
-    `reference` [1/s] is the rate of the test that gave the strength: 1e-3 for tensile and hardness tests, 1 for
-    constants of Johnson and Cook.
-    """
-
-    sensitivity: Annotated[float, Quantity("1", ge=0.0, le=0.1, hint="about 0.012 for steel")]
-    reference: Annotated[float, Quantity("1/s", above=0.0)] = 1e-3
-
-
 class Numerics(Frozen):
     """Steps of the shortest contact, or the largest relative `error` of e_n, for which the step is then searched."""
 
@@ -183,7 +172,6 @@ class Case(Frozen):
     materials: dict[Name, Material]
     impact: Impact
     law: LawChoice
-    rate: Rate | None = None
     viscous: Viscous | None = None
     contact: Friction | None = None
     numerics: Numerics = Numerics()

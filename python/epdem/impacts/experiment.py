@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ..case.fields import Material, Tangential
-from ..case.impact import RIGID, Case, Check, Numerics, Rate, parse
+from ..case.impact import RIGID, Case, Check, Numerics, parse
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
@@ -20,7 +20,6 @@ from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, find
 from ..theory import law as theory_law
 from ..theory import pair
 from ..theory.backbones import ADHESIVE, LAWS, Backbone
-from ..theory.numerics import Real
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,6 @@ class Experiment:
     name: str = "impact"
     title: str = "Impact"
     source: str = "made by a program"
-    rated: bool = False  # the strengths are those at a strain rate
 
     def __post_init__(self) -> None:
         if self.body.rigid and self.target.rigid:
@@ -162,36 +160,6 @@ def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     return replace(spec, common=numbers.absolute is not None)
 
 
-def strain_rate(speed: Real, a: Real, *, share: float) -> Real:
-    """Mean strain rate [1/s] of the weaker body, whose `share` of the strain is w: 0.2 w speed/a.
-
-    speed [m/s] of the impact, a [m] its largest contact radius. The strain is 0.2 w a/R* (Johnson 1985, section 11.5,
-    for w = 1), the time a^2/(R* speed).
-    """
-    return 0.2 * share * speed / a
-
-
-def apply_rate(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
-    """The law with its strengths at the strain rate of an impact at `speed` [m/s], `strain_rate` at its largest a.
-
-    One strength serves all speeds of a case: the rate belongs to the
-    median speed, and a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
-    """
-    if find_law(spec.name).strength is None:
-        return spec
-    E_star = float(pair.E_star(body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio))
-    R_star, m_star = float(pair.R_star(body.radius, target.radius)), float(pair.m_star(body.mass, target.mass))
-    factor, found = 1.0, spec
-    for _ in range(20):  # the factor hardly changes the radius: three digits a turn
-        found = spec.of(*(factor * s for s in spec.strengths))
-        theory, work = found.theory(E_star=E_star, R_star=R_star, radius=body.radius), 0.5 * m_star * speed**2
-        a = float(theory.radius_of_work(work))
-        factor = 1.0 + rate.sensitivity * math.log(
-            max(float(strain_rate(speed, a, share=found.share)) / rate.reference, 1.0)
-        )
-    return found
-
-
 def _body(case: Case, material: str, radius: float | None) -> Body:
     if material == RIGID:
         return RIGID_PLANE
@@ -212,12 +180,8 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     numbers = law_numbers(case.law.name, case.law.parameters())
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
         numbers = replace(default_numbers(law), adhesion=numbers.adhesion if find_law(law).adheres else None)
-    spec = pair_of(numbers, body, target)
-    if case.rate:
-        speeds = sorted(case.impact.speed_values())
-        spec = apply_rate(spec, case.rate, body, target, float(speeds[len(speeds) // 2]))
     return Experiment(
-        law=spec,
+        law=pair_of(numbers, body, target),
         body=body,
         target=target,
         speed=speed,
@@ -228,7 +192,6 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         name=case.name,
         title=case.case.title,
         source=case.case.source,
-        rated=case.rate is not None,
     )
 
 

@@ -10,9 +10,8 @@ import pandas as pd
 from ..laws.strengths import find_law
 from ..theory import validity
 from . import oblique
-from .experiment import Experiment, strain_rate
+from .experiment import Experiment
 
-FASTEST = 1e4  # strain rate [1/s] up to which the strength of metals grows with its logarithm
 LARGEST_TURN = 1e-3  # error of the overlap by the turn of the line of centres that is not worth a sentence
 
 
@@ -89,24 +88,12 @@ def predict(experiment: Experiment) -> Prediction:
         rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
         caveats=(
             *validity.caveats(law, **pair),
-            *_too_fast(x, columns["radius_max"]),
             *_turning(x, columns["contact_time"], columns["overlap_max"]),
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain"], x.speed)),
         observation_time=observed,
         **columns,
     )
-
-
-def _too_fast(x: Experiment, radius: np.ndarray) -> list[str]:
-    """A sentence on impacts of a case with [rate] beyond the strain rates for which its formula holds."""
-    rate = np.asarray(strain_rate(x.speed, radius, share=x.law.share))
-    if not x.rated or rate.max() <= FASTEST:
-        return []
-    return [
-        f"the strain rate reaches {rate.max():.2g} per s, above {FASTEST:g} per s from "
-        f"{x.speed[rate > FASTEST].min():.3g} m/s on: [rate] is an extrapolation there"
-    ]
 
 
 def _turning(x: Experiment, contact_time: np.ndarray, overlap: np.ndarray) -> list[str]:

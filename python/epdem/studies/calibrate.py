@@ -16,7 +16,7 @@ from ..case.law import law_numbers
 from ..case.toml import error_context, text_of
 from ..case.units import to_si
 from ..errors import CaseError
-from ..impacts.experiment import Body, Experiment, apply_rate, bodies, pair_of
+from ..impacts.experiment import Body, Experiment, bodies, pair_of
 from ..impacts.prediction import predict
 from ..laws.strengths import LEAST_STRENGTH, LawNumbers, find_law, strength_of_hardness
 from ..theory.backbones import Backbone
@@ -92,13 +92,11 @@ class _Uncalibrated:
     parameter: str
 
     def experiment(self, strength: float, *speeds: float) -> Experiment:
-        """Impacts at `speeds` [m/s] of bodies that all have this strength [Pa], with [rate] at its reference."""
+        """Impacts at `speeds` [m/s] of bodies that all have this strength [Pa]."""
         body, target = bodies(self.case)
         spec = pair_of(replace(self.law, absolute=strength), body, target)
-        if self.case.rate:
-            spec = apply_rate(spec, self.case.rate, body, target, sorted(speeds)[len(speeds) // 2])
         viscous = self.case.viscous.restitution if self.case.viscous else None
-        return Experiment(spec, body, target, np.array(speeds), viscous, rated=self.case.rate is not None)
+        return Experiment(spec, body, target, np.array(speeds), viscous)
 
     def hardening(self, exponent: float) -> "_Uncalibrated":
         """The same with this hardening exponent."""

@@ -13,9 +13,8 @@ fall with them, weight does not.
 The overlap of first yield goes as (p_y/E*)^2: yield_ratio k^0.4. The constraint of a hardness depends on E/Y, so that a
 hardness becomes the yield_ratio of the same strength.
 
-What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (w a/R*)^-0.7), and the reference of a
-strength that grows with the rate 0.2 w v/a falls as the rate. The area that finite strain takes off goes with
-overlap/R*, which no parameter scales: there e_n changes.
+Finite strain, which depends on a/R itself, takes c k^0.14 in exp(-c (w a/R*)^-0.7). The area that finite strain takes
+off goes with overlap/R*, which no parameter scales: there e_n changes.
 """
 
 from collections.abc import Iterator
@@ -27,7 +26,6 @@ import numpy as np
 import tomlkit
 
 from ..case.fields import Material
-from ..case.impact import Rate
 from ..case.law import law_numbers
 from ..case.toml import error_context, portable_text, read_toml, text_of, with_library
 from ..errors import CaseError
@@ -111,9 +109,6 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
     if none and (strain := law.get("finite_strain", False)) and strain < none:
         strain = FINITE_STRAIN if strain is True else strain
         texts["law", "finite_strain"] = strain * factor ** (STRAIN_POWER * STRAIN_EXPONENT)
-    if "rate" in data:
-        reference = data["rate"].get("reference", f"{Rate.model_fields['reference'].default} 1/s")
-        texts["rate", "reference"] = _scaled(reference, factor**-STRAIN_POWER)
     texts |= {key: _scaled(force, factor**-FORCE_POWER) for key, force in _forces(data)}
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
     return texts | {("case", "name"): name}
