@@ -6,7 +6,7 @@ from typing import Any
 
 from .base import __version__ as __version__
 
-__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
 
 
 def __getattr__(name: str) -> Any:

@@ -6,7 +6,6 @@ from .api import Run as Run
 from .api import Scene as Scene
 from .api import SceneRun as SceneRun
 from .api import calibrate as calibrate
-from .api import cite as cite
 from .api import deck as deck
 from .api import predict as predict
 from .api import run as run

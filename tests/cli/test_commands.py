@@ -64,7 +64,6 @@ DOCUMENTS = {  # words, and what the document must hold
     ),
     "verify rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
-    "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "export liggghts": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
     "export lammps": (
         ["-o", "plugin"],
@@ -90,7 +89,6 @@ MISTAKES = {  # words, and what the sentence must hold
     "verify stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must lie in (0, 1e12)"),
     "calibrate": (["steel.toml"], "give one measurement"),
-    "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "export liggghts": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "export lammps": (["-o", "."], "--out .: it has files; name a new folder"),
     "export yade": (["-o", "."], "--out .: it has files; name a new folder"),

@@ -85,8 +85,6 @@ KINDS = {  # words of a call without the option, and the value of every option
     "calibrate from HB": (("calibrate", "steel.toml", "--hb", "300"), HARDNESS),
     "calibrate from a scene": (("calibrate", "scene.toml", *TARGET), HARDNESS),
     "doctor": (("doctor",), {}),
-    "cite for impacts": (("cite", "steel.toml"), {"engine": "yade", "law": "hertz", "bibtex": None}),
-    "cite for a scene": (("cite", "scene.toml"), {"engine": "yade", "law": "hertz", "bibtex": None}),
     "export": (("export liggghts", "-o", "."), {"out": "there", "check": "tree"}),
     "export lammps": (("export lammps", "-o", "plugin"), {"out": "there"}),
     "export yade": (("export yade", "-o", "module"), {"out": "there"}),

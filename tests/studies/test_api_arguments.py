@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a notebook user gives to the Python interface is taken, or refused with one sentence that names its type."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import epdem
-from epdem import Case, Scene, calibrate, cite, deck, predict, run, sweep
+from epdem import Case, Scene, calibrate, deck, predict, run, sweep
+from epdem.engines.citations import citations
 from epdem.errors import CaseError
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -75,7 +74,6 @@ WRONG = {
         lambda c, p: Scene.from_toml(CASES / "impactor_bowl.toml").replace({"scene.body.7.radius": 1}),
         r"no key 'scene\.body\.7\.radius'",
     ),
-    "cite of a number": (lambda c, p: cite(3), "case = 3: of type int"),
 }
 
 
@@ -134,36 +132,11 @@ def test_tables_replaced_are_tables_given(data, names):
     assert Case(**first).replace(**second) == Case(**(first | second))
 
 
-def test_a_case_is_cited_in_words_and_in_bibtex(steel):
-    found = cite(steel, engines=["embedded", "liggghts"])
-    assert {"epdem", "liggghts"} <= set(found) and found["law thornton, Thornton 1997"].startswith(
-        "C. Thornton, J. Appl"
-    )
-    text = found.bibtex()
-    entries = re.findall(r"^@(\w+)\{([\w.:-]+),\n((?:  .*\n)+)\}$", text, re.M)
-    assert [kind for kind, _, _ in entries] == ["misc", "book", "article", "article"]
-    keys = [key for _, key, _ in entries]
-    assert keys == ["epdem", "SevilleWu2016", "Thornton1997", "KlossEtAl2012"]
-    fields = dict(re.findall(r"  (\w+) = \{(.*)\},", entries[2][2]))
-    assert fields == {
-        "author": "C. Thornton",
-        "title": "Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres",
-        "journal": "J. Appl. Mech.",
-        "volume": "64",
-        "pages": "383",
-        "year": "1997",
-    }
-
-
 def test_partial_slip_and_oblique_impacts_have_sources():
-    oblique = cite(CASES / "oblique_steel.toml")
+    oblique = citations(Case.from_toml(CASES / "oblique_steel.toml").model, ["hertz"], [])
     assert any("Wear 38 (1976) 101" in text for text in oblique.values())
     scene = Scene.from_toml(SCENE)
-    assert not any("partial slip" in what for what in cite(scene))
+    assert not any("partial slip" in what for what in citations(scene.model, ["hertz"], []))
     contact = {"friction": 0.3, "tangential": "partial_slip"}
-    slips = cite(scene.replace({"contact": contact}))
+    slips = citations(scene.replace({"contact": contact}).model, ["hertz"], [])
     assert any("Jaeger" in text for what, text in slips.items() if what.startswith("partial slip"))
-
-
-def test_the_interface_names_cite():
-    assert epdem.cite is cite

@@ -20,7 +20,6 @@ from ..case.scene import is_scene
 from ..case.toml import error_context, read_toml
 from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
-from ..engines.citations import Citations, citations
 from ..errors import CaseError
 from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment
@@ -39,7 +38,7 @@ from ..studies.sweep.run import SweepOutcome
 from .arguments import Count, Names, Ranks, Seed, Table, take, type_error
 from .files import Case, Scene
 
-__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
 log = logging.getLogger("epdem")
 
 
@@ -189,24 +188,6 @@ def deck(
         for sentence in planned_warnings(p):
             warn(sentence)
         return write_scene_deck(scene_engine(engine), p, folder, force=force)
-
-
-def cite(
-    case: Case | Scene | Path | str,
-    *,
-    engines: str | Sequence[str] = (DEFAULT_ENGINE,),
-    laws: str | Sequence[str] = (),
-) -> Citations:
-    """Citations of a case and its engines: text by cited subject.
-
-    `cite(case).bibtex()` gives entries of BibTeX. Raises CaseError.
-    """
-    case, laws = _case(case), take("laws", laws, Names)
-    if isinstance(case, Scene) and laws:
-        raise CaseError(f"laws = {laws!r}: a scene has its own law; leave it out")
-    tools = [engine_named(name).name for name in take("engines", engines, Names)]
-    with error_context(case.place):
-        return citations(case.model, laws or [case.model.law.name], tools)
 
 
 def sweep(

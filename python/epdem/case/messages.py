@@ -26,7 +26,7 @@ TEXTS = {
 }
 OTHER_KIND = {
     "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); "
-    "run, deck, cite, soften, sweep and calibrate --target take scenes",
+    "run, deck, soften, sweep and calibrate --target take scenes",
     "scene": "is a case of impacts ([impact]) and this needs a bulk scene ([scene])",
 }
 

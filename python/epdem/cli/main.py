@@ -213,27 +213,6 @@ def deck(
 
 
 @app.command()
-def cite(
-    case: CasePath,
-    engine: Engines = None,
-    law: Laws = None,
-    bibtex: Annotated[bool, typer.Option("--bibtex", help="print entries of BibTeX")] = False,
-    as_json: AsJson = False,
-) -> None:
-    """Print what to cite for the law of a case and for the engines that run the case."""
-    from ..api import cite as cited
-
-    refuse_options(case, "--bibtex prints BibTeX", json=as_json and bibtex)
-    if cli_scene.is_scene(case):
-        refuse_options(case, "a scene has its own law", law=law)
-    found = cited(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
-    if bibtex:
-        print(found.bibtex(), end="")
-    else:
-        print(json.dumps(found) if as_json else "\n".join(f"{what}: {text}" for what, text in found.items()))
-
-
-@app.command()
 def doctor(as_json: AsJson = False) -> None:
     """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
     from ..engines.doctor import examine, show

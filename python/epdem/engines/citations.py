@@ -7,26 +7,14 @@ from ..base import __version__
 from ..case.impact import Case
 from ..case.scene import SceneCase
 from ..laws.strengths import find_law
-from ..theory.sources import CHAPTER, SOURCES, Source
+from ..theory.sources import CHAPTER, SOURCES
 from . import ENGINES
 
-PROGRAM = Source("The epdem developers", f"epdem {__version__}", "CITATION.cff", kind="misc")
+PROGRAM = f"The epdem developers, epdem {__version__} (CITATION.cff)"
 
 
-class Citations(dict[str, str]):
-    """Sources as lines of text, by what each is cited for; `bibtex` gives the same sources as entries of BibTeX."""
-
-    def __init__(self, sources: dict[str, Source]):
-        super().__init__({what: str(source) for what, source in sources.items()})
-        self._sources = sources
-
-    def bibtex(self) -> str:
-        """One entry for each source, separated by empty lines."""
-        return "\n".join(source.bibtex() for source in dict.fromkeys(self._sources.values()))
-
-
-def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> Citations:
-    """Sources to cite for a case that runs with `laws` on `engines`."""
+def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> dict[str, str]:
+    """Sources to cite for a case that runs with `laws` on `engines`, by what each is cited for."""
     found = {"epdem": PROGRAM, "equations 8.xx": CHAPTER} | of_laws(laws)
     if case.viscous is not None:
         found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]
@@ -36,9 +24,9 @@ def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str
         names = ("Jaeger 1993", "Popov and Hess 2015")
         found |= {f"partial slip, {name}": SOURCES[name] for name in names}
     programs = {name: ENGINES[name].source for name in engines if name in ENGINES}
-    return Citations(found | {name: source for name, source in programs.items() if source})
+    return found | {name: source for name, source in programs.items() if source}
 
 
-def of_laws(laws: Sequence[str]) -> dict[str, Source]:
+def of_laws(laws: Sequence[str]) -> dict[str, str]:
     """The sources of laws, by law and short name."""
     return {f"law {law}, {name}": SOURCES[name] for law in laws for name in find_law(law).sources}

@@ -12,14 +12,13 @@ from ..impacts.plan import Plan
 from ..jobs.engine import Feature, Report, silent
 from ..laws import library as claw
 from ..laws.library import ImpactNumbers
-from ..theory.sources import Source
 
 
 class Embedded:
     """Impacts inside the C library, without any other program."""
 
     name = "embedded"
-    source: Source | None = None
+    source: str | None = None
     laws: tuple[str, ...] | None = None
     ranks, mpirun = 1, ""
     features = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION})

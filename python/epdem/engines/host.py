@@ -24,7 +24,6 @@ from ..scenes.columns import named_rows
 from ..scenes.engine import Resumed
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
-from ..theory.sources import Source
 from . import log
 from .restarts import choose
 
@@ -35,7 +34,7 @@ class Host(ABC):
     """An engine whose decks run without epdem."""
 
     name: str
-    source: Source | None
+    source: str | None
     title: str  # the program's name
     template: str  # of impacts
     laws: tuple[str, ...] | None = None

@@ -9,7 +9,6 @@ from typing import Protocol, TypeVar
 
 from ..errors import CaseError, EngineError
 from ..laws.strengths import find_law
-from ..theory.sources import Source
 
 
 class Feature(StrEnum):
@@ -47,7 +46,7 @@ class Tool(Protocol):
 class Engine(Tool, Protocol[Job, Result]):
     """One way to run a job: the plan of impacts gives a trajectory, the plan of a scene gives tables."""
 
-    source: Source | None  # what to cite for its program; None: epdem itself
+    source: str | None  # what to cite for its program; None: epdem itself
     ranks: int  # the largest number on this machine
 
     @property

@@ -13,7 +13,6 @@ from ...impacts.engine import Trajectory, check_features, oblique_pairs
 from ...impacts.plan import Plan, approach
 from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
-from ...theory.sources import Source
 from ..host import Host, impact_head
 from ..input_script import atom_types, impact_files
 from ..restarts import pruning
@@ -26,15 +25,7 @@ class Lammps(Host):
     """LAMMPS with pair_style ep and fix wall/ep."""
 
     name, title = "lammps", "LAMMPS"
-    source: Source | None = Source(
-        "A. P. Thompson et al.",
-        "LAMMPS - a flexible simulation tool for particle-based materials modeling at the atomic, meso, and continuum "
-        "scales",
-        "Comput. Phys. Commun.",
-        "271",
-        "108171",
-        2022,
-    )
+    source: str | None = "A. P. Thompson et al., Comput. Phys. Commun. 271 (2022) 108171"
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
     out = launcher.OUT

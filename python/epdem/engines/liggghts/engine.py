@@ -12,7 +12,6 @@ from ...impacts.engine import Trajectory, check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
-from ...theory.sources import Source
 from .. import log
 from ..host import Host, impact_head
 from ..input_script import atom_types, finite, impact_files
@@ -28,14 +27,7 @@ class Liggghts(Host):
     """LIGGGHTS with a model of epdem; `model` and more can be replaced to run LIGGGHTS's own models."""
 
     name, title = "liggghts", "LIGGGHTS"
-    source: Source | None = Source(
-        "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker",
-        "Models, algorithms and validation for opensource DEM and CFD-DEM",
-        "Prog. Comput. Fluid Dyn.",
-        "12",
-        "140",
-        2012,
-    )
+    source: str | None = "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker, Prog. Comput. Fluid Dyn. 12 (2012) 140"
     template = "liggghts/impact.in.j2"
     ranks = most_ranks()
     mpirun = launcher.MPIRUN

@@ -19,7 +19,6 @@ from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
-from ...theory.sources import Source
 from ..host import Host, impact_head
 from . import classes, deck, launcher, tables
 from .classes import BodyTable, ContactClasses, DeckMaterial, Functors, PairValue
@@ -34,13 +33,8 @@ class Yade(Host):
     """YADE with the classes of epdem_yade or the C library in the deck; a run has one core."""
 
     name, title = "yade", "YADE"
-    source: Source | None = Source(
-        "V. Smilauer et al.",
-        "Yade Documentation, 3rd ed.",
-        "The Yade Project",
-        year=2021,
-        kind="manual",
-        note="doi:10.5281/zenodo.5705394",
+    source: str | None = (
+        "V. Smilauer et al., Yade Documentation, 3rd ed., The Yade Project (2021), doi:10.5281/zenodo.5705394"
     )
     ranks, mpirun = 1, ""
     features = frozenset({Feature.DECK, Feature.POSITIONS})
