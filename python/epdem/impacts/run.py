@@ -96,23 +96,6 @@ def _stage(results: store.Results, key: str) -> Stage | None:
     return Stage(Inputs({}, str(about.get("inputs"))), {"impacts": results.impacts[key]}, seconds)
 
 
-def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
-    if old.case_text != results.case_text:
-        return results
-    keep = [key for key in old.runs if key not in results.runs]
-    rows = old.comparison
-    rows = rows[[f"{law}/{name}" in keep for law, name in zip(rows["law"], rows["engine"], strict=True)]]
-    return store.Results(
-        results.case_text,
-        old.attributes | results.attributes,
-        pd.concat([results.comparison, rows], ignore_index=True),
-        {k: old.impacts[k] for k in keep} | results.impacts,
-        old.predictions | results.predictions,
-        {k: old.runs[k] for k in keep} | results.runs,
-        {k: v for k, v in old.decks.items() if k.rsplit("/", 1)[0] in keep} | results.decks,
-    )
-
-
 @dataclass(frozen=True)
 class _Work:
     """A checked case with its engines and laws."""
@@ -206,5 +189,5 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
             rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
             results.comparison = pd.concat(rows, ignore_index=True)
-            store.write(stored, _merge_earlier(results, old))  # results are stored after each engine
+            store.write(stored, results)  # after each engine
     return outcome

@@ -3,8 +3,7 @@
 
 The name of a folder is the hash of the data that the engines get and of the engines, so that a sweep that has grown or
 changed finds again what is finished. `point.json` is written whole or not at all: state and results never disagree.
-While a point runs it has `running.json` instead. `stages.json` holds the tables of impacts, which are judged anew when
-the case or epdem has changed and the inputs of the engines have not.
+While a point runs it has `running.json` instead.
 """
 
 import copy
@@ -18,7 +17,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
 import tomlkit
 
 from ...base import paths
@@ -27,11 +25,9 @@ from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import file_names
 from ...errors import CaseError
-from ...jobs.stage import Inputs, Stage
 from .points import Point, assign, keys_of
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
-STAGES = "stages.json"
 JUDGED = ("case.title", "case.source", "check", "scene.measure")  # keys that no engine reads
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 STATES = (WAITING, RUNNING, DONE, FAILED)
@@ -119,8 +115,8 @@ class Sweep:
         return file_names([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:
-        """Hash of the case of a point with its files, of the engines and of epdem: a point with another one is looked
-        at again, and its engines run if their own inputs have changed."""
+        """Hash of the case of a point with its files, of the engines and of epdem: a point with another one runs again;
+        a scene whose engine has the same inputs is judged anew alone."""
         names = file_names(self.data(number)) if self._files(self.points[number - 1]) else file_names(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
         known = (self.data(number), self.identities[number - 1], sorted(self.versions.items()), contents)
@@ -211,28 +207,6 @@ def end(
     with atomic(place / FINISHED, sync=False) as temporary:
         temporary.write_text(json.dumps(about | state | {"rows": rows or {}}), encoding="utf-8")
     (place / STARTED).unlink(missing_ok=True)
-
-
-def write_stages(place: Path, stages: dict[str, Stage]) -> None:
-    """Store the impacts of each law and engine of a point."""
-    content = {
-        name: {"key": s.inputs.key, "seconds": s.seconds, "impacts": s.tables["impacts"].to_dict("list")}
-        for name, s in stages.items()
-    }
-    with atomic(place / STAGES, sync=False) as temporary:
-        temporary.write_text(json.dumps(content), encoding="utf-8")
-
-
-def read_stages(place: Path) -> dict[str, Stage]:
-    """Stages that `write_stages` stored; none of a file that is missing or damaged."""
-    try:
-        content = json.loads((place / STAGES).read_text(encoding="utf-8"))
-        return {
-            name: Stage(Inputs({}, s["key"]), {"impacts": pd.DataFrame(s["impacts"])}, s["seconds"])
-            for name, s in content.items()
-        }
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return {}
 
 
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:

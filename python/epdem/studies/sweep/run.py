@@ -31,7 +31,6 @@ from ...impacts.plan import plan as plan_impacts
 from ...impacts.prediction import predict
 from ...impacts.run import run_plan
 from ...jobs.engine import Feature, require
-from ...jobs.stage import Stage
 from ...scenes.plan import plan as plan_scene
 from ...scenes.run import run as run_scene
 from . import folder as store
@@ -97,23 +96,17 @@ def evaluate(sweep: Sweep, folder: Path, number: int) -> None:
 
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
     case, tables = impact.parse(sweep.data(number), sweep.place(number)), []
-    stored, kept = store.read_stages(place), dict[str, Stage]()
     for law in sweep.laws or (None,):
         x = experiment(case, law)
         prediction = predict(x)
         p = plan_impacts(x, prediction)
         for tool in map(engine, sweep.engines):
             check_plan(tool, p, prediction, ranks=sweep.ranks)
-            key, has_deck = f"{x.law.name}/{tool.name}", Feature.DECK in tool.features
-            at, version = place / key if has_deck else place, sweep.versions[tool.name]
-            stage = run_plan(p, tool, at, ranks=sweep.ranks, version=version, stored=stored.get(key))
-            if has_deck:  # others run faster than a table is read
-                kept[key] = stage
+            at = place / x.law.name / tool.name if Feature.DECK in tool.features else place
+            stage = run_plan(p, tool, at, ranks=sweep.ranks)
             rows = compare(tool.name, x.law.name, stage.tables["impacts"], prediction, x.check)
             said = [*case_warnings(case), *prediction.warnings, *tool.check(p)]
             tables.append(rows.assign(warnings=SEPARATOR.join(said)))
-    if kept:
-        store.write_stages(place, kept)
     table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
     return {str(name): table[name].tolist() for name in table.columns}
 
