@@ -74,7 +74,10 @@ DOCUMENTS = {  # words, and what the document must hold
         ["-s", "leeb_G", "-e", "embedded", "-l", "hertz"],
         lambda d: [round(row["error"], 4) for row in d["rows"] if row["quantity"] == "e_n"] == [0.3333],
     ),
-    "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.81e6 - 1) < 1e-5),
+    "calibrate": (
+        ["steel.toml", "--e-n", "0.6763264338717", "--speed", "5 m/s"],
+        lambda d: abs(d["yield_stress"] / 1e9 - 1) < 1e-6,
+    ),
 }
 MISTAKES = {  # words, and what the sentence must hold
     "run": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),

@@ -20,7 +20,7 @@ SENTENCES = {
     ("predict", "steel.toml", "--error", "1"): "'--error': must be less than or equal to 0.1; see epdem predict",
     ("predict", "steel.toml", "--speed", "1 m/s"): "steel.toml: --speed: the case has its own numbers; leave it out",
     ("predict", "--law", "hertz"): "--law: it belongs to a case; leave it out",
-    ("calibrate", "steel.toml", "--hv", "-o"): "'--hv': must be a number; see epdem calibrate --help",
+    ("calibrate", "steel.toml", "--e-n", "-o"): "'--e-n': must be a number; see epdem calibrate --help",
     ("run", "steel.toml", "--ranks", "x"): "'--ranks': must be a whole number; see epdem run --help",
     ("predict", "--speed", "3"): "'3' has no unit; write \"3 m/s\" if that is what is meant",
     ("export liggghts",): "epdem export liggghts: name a folder by --out or --check",
@@ -41,7 +41,14 @@ SENTENCES = {
         "--jobs",
         "2",
     ): "--jobs: give the jobs of a cluster by --slurm",
-    ("calibrate", "hertz.toml", "--hv", "100"): "law hertz never yields; it has nothing to calibrate",
+    (
+        "calibrate",
+        "hertz.toml",
+        "--e-n",
+        "0.6",
+        "--speed",
+        "2 m/s",
+    ): "law hertz never yields; it has nothing to calibrate",
 }
 
 

@@ -30,9 +30,14 @@ from epdem.verification.stability import bulk
 STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
 TEMPLATE = "{{ deck.plan.time_step }} {{ a | default(0) }}\n"
-HARDNESS = {"indentation": "curve.csv", "e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
-HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9", "tolerance": "0.1", "engine": "yade"}
-HARDNESS |= {"measured": None, "uncertainty": "0.01", "ranks": "2", "jobs": "1", "out": "there", "force": None}
+CALIBRATE = {"indentation": "curve.csv", "e_n": "0.6", "speed": "3 m/s"}
+CALIBRATE |= {
+    "target": "floor_load_mean=1 N",
+    "free": "contact.friction=0.1..0.9",
+    "tolerance": "0.1",
+    "engine": "yade",
+}
+CALIBRATE |= {"measured": None, "uncertainty": "0.01", "ranks": "2", "jobs": "1", "out": "there", "force": None}
 TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"full": None, "pictures": "svg", "force": None}
@@ -80,10 +85,8 @@ KINDS = {  # words of a call without the option, and the value of every option
     ),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "soften a scene": (("soften", "scene.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
-    "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), HARDNESS),
-    "calibrate from HV": (("calibrate", "steel.toml", "--hv", "300"), HARDNESS),
-    "calibrate from HB": (("calibrate", "steel.toml", "--hb", "300"), HARDNESS),
-    "calibrate from a scene": (("calibrate", "scene.toml", *TARGET), HARDNESS),
+    "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), CALIBRATE),
+    "calibrate from a scene": (("calibrate", "scene.toml", *TARGET), CALIBRATE),
     "doctor": (("doctor",), {}),
     "export": (("export liggghts", "-o", "."), {"out": "there", "check": "tree"}),
     "export lammps": (("export lammps", "-o", "plugin"), {"out": "there"}),
@@ -215,7 +218,7 @@ def test_every_option_is_obeyed_or_refused(kind, tmp_path, library, capsys, monk
 
 @pytest.mark.parametrize("command", IMPACTS_ONLY)
 def test_a_command_for_impacts_says_that_it_takes_no_scene(command, tmp_path, library, capsys, monkeypatch):
-    words = [command, "scene.toml", *(["--hv", "300"] if command == "calibrate" else [])]
+    words = [command, "scene.toml", *(["--e-n", "0.6", "--speed", "2 m/s"] if command == "calibrate" else [])]
     monkeypatch.undo()
     done, _ = evidence(words, tmp_path / "x", library, capsys, monkeypatch)
     assert done.code == 2 and "scene.toml is a bulk scene" in done.err and "take scenes" in done.err

@@ -119,7 +119,7 @@ COMMANDS = [
     "run",
     "nothing",
 ]
-OPTIONS = ["-o", "--out", "-e", "--law", "-l", "--json", "--set", "-k", "--hv", "--e-n", "--speed", "--case", "--force"]
+OPTIONS = ["-o", "--out", "-e", "--law", "-l", "--json", "--set", "-k", "--e-n", "--speed", "--case", "--force"]
 OPTIONS += [
     "--points",
     "--seed",

@@ -12,21 +12,22 @@ from typer.testing import CliRunner
 
 from epdem.base.declarations import declarations
 from epdem.case.impact import load
+from epdem.case.law import law_numbers
 from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
+from epdem.laws.strengths import strength_of_hardness
 from epdem.studies.calibrate import (
-    from_hardness,
     from_indentation,
     from_restitution,
     from_restitutions,
-    hardness_test,
     measured_restitutions,
     summary,
 )
 from epdem.theory.adhesion import yield_speed
-from studies.test_soften import CASES, STEEL, with_law
+from epdem.theory.indentation import PYRAMID, VICKERS, Indentation
+from studies.test_soften import STEEL, with_law
 
 
 @pytest.mark.parametrize("law", sorted(n for n, info in declarations().items() if info.parameters and not info.adheres))
@@ -52,6 +53,18 @@ def test_the_strength_of_an_adhesive_law_is_found_from_e_n(tmp_path):
     assert math.isclose(found.yield_speed, float(yield_speed(x.theory(), m_star=x.m_star)), rel_tol=1e-6)
 
 
+def vickers(hardness):
+    return Indentation(hardness * VICKERS, PYRAMID)
+
+
+def of_hardness(path, test, source="HV"):
+    """The strength that the law of a case has for the hardness of its steel."""
+    case = load(path)
+    return strength_of_hardness(
+        law_numbers(case.law.name, case.law.parameters()), test, case.materials["steel"], source
+    )
+
+
 def pyramid_of_the_cavity(E, nu, slope):
     """(p_m/Y at each Y/E, Y/E) of the expanding cavity: plastic radius from the volume, then core and mean pressure."""
     c = np.geomspace(1.01, 200, 200_001)  # plastic over contact radius
@@ -65,7 +78,7 @@ def test_the_yield_stress_of_a_vickers_hardness_is_that_of_the_expanding_cavity(
     slant_height = edge / 2 / math.sin(math.radians(136 / 2))
     load = hardness * 9.80665e6 * 4 * (edge * slant_height / 2)
     pressure = load / edge**2
-    found = from_hardness(with_law(tmp_path, "cavity"), hardness_test(vickers=hardness), "HV").value
+    found = of_hardness(with_law(tmp_path, "cavity"), vickers(hardness))
     assert pressure / found == pytest.approx(constraint, abs=6e-4)
     ratio, strain = pyramid_of_the_cavity(208e9, 0.3, math.tan(math.radians(19.7)))
     expected = np.interp(pressure, (np.minimum(ratio, 2.8) * strain * 208e9)[::-1], strain[::-1] * 208e9)
@@ -74,9 +87,8 @@ def test_the_yield_stress_of_a_vickers_hardness_is_that_of_the_expanding_cavity(
 
 @pytest.mark.parametrize("ratio", [0.24, 0.375, 0.6])
 def test_a_hard_steel_under_a_ball_has_the_constraint_of_its_own_dent(ratio, tmp_path):
-    test = hardness_test(brinell=800, dent_ratio=ratio)
-    assert test.slope == ratio
-    found = from_hardness(with_law(tmp_path, "cavity"), test, "HB 800").value
+    test = Indentation(8e9, ratio)
+    found = of_hardness(with_law(tmp_path, "cavity"), test)
     shares, strain = pyramid_of_the_cavity(208e9, 0.3, ratio)
     expected = np.interp(test.pressure, (np.minimum(shares, 2.8) * strain * 208e9)[::-1], strain[::-1] * 208e9)
     assert found == pytest.approx(expected, rel=1e-4)
@@ -84,40 +96,13 @@ def test_a_hard_steel_under_a_ball_has_the_constraint_of_its_own_dent(ratio, tmp
 
 def test_a_law_of_a_contact_pressure_has_the_measured_mean_pressure_in_the_hardness_test(tmp_path):
     """thornton: F = pi a^2 p_y - pi a_y^2 p_y/3 beyond yield; johnson's mean pressure is its strength."""
-    test, E_star = hardness_test(vickers=955), 208e9 / (1 - 0.3**2)
+    test, E_star = vickers(955), 208e9 / (1 - 0.3**2)
     for law in ("thornton", "thornton_ning"):
-        found = from_hardness(with_law(tmp_path, law), test, "HV 955").value
+        found = of_hardness(with_law(tmp_path, law), test)
         a_y = math.pi * found / (2 * E_star)  # of R* = 1
         assert found * (1 - (a_y / test.slope) ** 2 / 3) == pytest.approx(test.pressure, rel=1e-9)
         assert 1.01 < found / test.pressure < 1.02
-    assert from_hardness(with_law(tmp_path, "johnson"), test, "HV 955").value == pytest.approx(test.pressure, rel=1e-12)
-
-
-def test_the_hardness_is_that_of_the_softer_body():
-    soft = from_hardness(CASES / "leeb_D.toml", hardness_test(vickers=955), "HV 955").value
-    assert soft == pytest.approx(4.3305e9, rel=1e-4)  # E = 208 GPa; the carbide ball has 600 GPa
-
-
-@pytest.mark.parametrize("ratio", [1e-9, 0.01, 0.24, 0.375, 0.6, 1.0])
-def test_brinell_hardness_is_the_load_on_the_cap_and_the_mean_pressure_that_on_its_circle(ratio):
-    radius = 5e-3
-    depth = 2 * radius * math.sin(math.asin(ratio) / 2) ** 2
-    load = 200 * 9.80665e6 * 2 * math.pi * radius * depth
-    mean = load / (math.pi * (ratio * radius) ** 2)
-    assert math.isclose(hardness_test(brinell=200, dent_ratio=ratio).pressure, mean, rel_tol=1e-9)
-    assert hardness_test(brinell=200) == hardness_test(brinell=200, dent_ratio=0.375)
-
-
-def test_a_brinell_indentation_has_a_diameter():
-    done = CliRunner().invoke(app, ["calibrate", str(STEEL), "--hb", "200", "--dent-ratio", "0"])
-    assert "--dent-ratio 0, must lie in (0, 1]" in str(done.exception)
-
-
-@pytest.mark.parametrize("words", [["--hv", "1e9"], ["--hv", "1e-5"], ["--hb", "1e9"]])
-def test_a_hardness_beyond_the_modulus_is_refused_with_its_unit(words):
-    error = CliRunner().invoke(app, ["calibrate", str(STEEL), *words]).exception
-    assert isinstance(error, CaseError) and "must lie between 1e-08 and 0.1" in str(error)
-    assert f"{words[0].upper()[2:]} {float(words[1]):g}: " in str(error) and "kgf/mm^2" in str(error)
+    assert of_hardness(with_law(tmp_path, "johnson"), test) == pytest.approx(test.pressure, rel=1e-12)
 
 
 def test_impossible_measurements_are_refused(tmp_path):
@@ -126,8 +111,6 @@ def test_impossible_measurements_are_refused(tmp_path):
             from_restitution(STEEL, e_n, speed)
     with pytest.raises(CaseError, match="never yields; it has nothing to calibrate"):
         from_restitution(with_law(tmp_path, "hertz"), 0.6, 1.0)
-    with pytest.raises(CaseError, match="give one hardness, --hv or --hb"):
-        hardness_test()
 
 
 E_STAR, MASS = 208e9 / (2 * (1 - 0.3**2)), 4 / 3 * math.pi * 0.01**3 * 7850.0  # of the steel case
@@ -313,7 +296,9 @@ def test_an_elastic_impact_of_the_case_takes_part_and_a_percentage_does_not(tmp_
 
 
 def test_an_uncertainty_belongs_to_an_impact():
-    error = CliRunner().invoke(app, ["calibrate", str(STEEL), "--hv", "200", "--uncertainty", "0.01"]).exception
+    error = (
+        CliRunner().invoke(app, ["calibrate", str(STEEL), "--indentation", "x.csv", "--uncertainty", "0.01"]).exception
+    )
     assert "--uncertainty: it belongs to --e-n and --measured" in str(error)
 
 
@@ -323,21 +308,21 @@ def test_a_hardness_that_no_strength_gives_is_refused(tmp_path):
     path.write_text(path.read_text().replace('name = "meyer"\n', 'name = "meyer"\nhardening_exponent = 0.9\n'))
     said = r"HV 100: no yield_pressure above 1e-08 of E\* = 2.29e\+11 Pa gives 1.06e\+09 Pa .* lower law.hardening_exp"
     with pytest.raises(CaseError, match=said):
-        from_hardness(path, hardness_test(vickers=100), "HV 100")
+        of_hardness(path, vickers(100), "HV 100")
 
 
 def test_a_law_that_hardens_has_the_measured_mean_pressure_in_the_hardness_test(tmp_path):
     """p_m = 2/3 p_y [1 + 3/(2+x) (q^(2+x) - 1)]/q^2 at q = (a/R) 2E*/(pi p_y), E* of a rigid indenter."""
-    test = hardness_test(brinell=200, dent_ratio=0.4)
+    test = Indentation(2e9, 0.4)
     for x in (0.1, 0.4):
         path = with_law(tmp_path, "meyer")
         path.write_text(path.read_text().replace('name = "meyer"\n', f'name = "meyer"\nhardening_exponent = {x}\n'))
-        p_y = from_hardness(path, test, "HB 200").value
+        p_y = of_hardness(path, test)
         q = 0.4 * 2 * 208e9 / (1 - 0.3**2) / (math.pi * p_y)
         assert 2 / 3 * p_y * (1 + 3 / (2 + x) * (q ** (2 + x) - 1)) / q**2 == pytest.approx(test.pressure, rel=1e-9)
         index = path.read_text().replace(f"hardening_exponent = {x}", f"meyer_index = {2 + x}")
         path.write_text(index)
-        assert from_hardness(path, test, "HB 200").value == pytest.approx(p_y, rel=1e-12)
+        assert of_hardness(path, test) == pytest.approx(p_y, rel=1e-12)
 
 
 @pytest.mark.parametrize(

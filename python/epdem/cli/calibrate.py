@@ -25,12 +25,6 @@ def calibrate(
         bool, typer.Option("--measured", help="take speeds and e_n from the table 'measured' of the case")
     ] = False,
     uncertainty: Annotated[float | None, typer.Option(help="standard error of each of several e_n")] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness in kgf/mm^2 instead of an impact")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness in kgf/mm^2 instead of an impact")] = None,
-    dent_ratio: Annotated[
-        float | None,
-        typer.Option(help="Brinell test: diameter of the indentation over diameter of the ball (default: 0.375)"),
-    ] = None,
     indentation: Annotated[
         Path | None,
         typer.Option(
@@ -54,23 +48,22 @@ def calibrate(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Compute the strength of a law from e_n, a hardness or an indentation, or keys of a scene from its results.
+    """Compute the strength of a law from e_n or an indentation, or keys of a scene from its results.
 
     A fit of a scene leaves report.html in its folder.
     """
     impacts = {"e_n": e_n, "speed": speed, "measured": measured, "uncertainty": uncertainty}
-    hardness = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
     curve = {"indentation": indentation}
     of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs, "out": out}
     if target or free:
-        refuse_options(case, "it does not go with --target and --free", **impacts, **hardness, **curve)
+        refuse_options(case, "it does not go with --target and --free", **impacts, **curve)
         given = {k: v for k, v in (of_scene | {"force": force}).items() if v is not None}
         _of_scene(case, target or [], free or [], given, as_json)
         return
     refuse_options(case, "it goes with --target and --free", **of_scene, force=force)
     from ..studies.calibrate import summary
 
-    found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, hardness, indentation)
+    found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, indentation)
     print(json.dumps(vars(found), indent=1) if as_json else "\n".join(summary(found)))
 
 
@@ -103,25 +96,18 @@ def _from_measurement(
     speed: list[str],
     measured: bool,
     uncertainty: float | None,
-    hardness: dict[str, float | None],
     indentation: Path | None,
 ) -> "Calibration":
     from ..case.units import read_number
     from ..studies import calibrate as c
 
-    hv, hb, dent_ratio = hardness.values()
-    if (bool(e_n) + measured + (hv is not None or hb is not None) + (indentation is not None)) != 1:
-        raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, --hb, or --indentation")
-    if hb is None:
-        refuse_options(case, "it belongs to --hb", dent_ratio=dent_ratio)
+    if (bool(e_n) + measured + (indentation is not None)) != 1:
+        raise CaseError("give one measurement: --e-n with --speed, --measured, or --indentation")
     if not e_n:
         refuse_options(case, "it belongs to --e-n", speed=speed)
-    if not (measured or e_n):
+    if indentation is not None:
         refuse_options(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
-        if indentation is not None:
-            return c.from_indentation(case, indentation)
-        test = c.hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+        return c.from_indentation(case, indentation)
     if len(e_n) != len(speed):
         raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
     points = [(read_number("--speed", v, "m/s"), e) for v, e in zip(speed, e_n, strict=True)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The strength of a law from one e_n, a hardness or an indentation curve; strength and hardening exponent from e_n."""
+"""The strength of a law from one e_n or an indentation curve; strength and hardening exponent from several e_n."""
 
 import csv
 import io
@@ -16,44 +16,11 @@ from ..case.law import law_numbers
 from ..case.toml import error_context, text_of
 from ..case.units import to_si
 from ..errors import CaseError
-from ..impacts.experiment import Body, Experiment, bodies, pair_of
+from ..impacts.experiment import Experiment, bodies, pair_of
 from ..impacts.prediction import predict
-from ..laws.strengths import LEAST_STRENGTH, LawNumbers, find_law, strength_of_hardness
+from ..laws.strengths import LEAST_STRENGTH, LawNumbers, find_law
 from ..theory.backbones import Backbone
-from ..theory.indentation import KGF_PER_MM2, PYRAMID, VICKERS, Indentation
 from ..theory.numerics import bisect
-
-BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
-
-
-def hardness_test(
-    *, vickers: float | None = None, brinell: float | None = None, dent_ratio: float | None = None
-) -> Indentation:
-    """The hardness test behind HV or HB (kgf/mm^2).
-
-    Both hardnesses are the load over the area of the surface that the indenter leaves; the mean pressure (Meyer's
-    hardness) is the load over its projection. For the pyramid of Vickers p_m = 1.0785 HV. For the cap of Brinell
-    p_m = HB 2/(1 + sqrt(1 - x^2)) with x = `dent_ratio` in (0, 1], diameter of the indentation over that of the
-    ball (None: BRINELL_DENT). Raises CaseError unless one hardness > 0 is given.
-    """
-    values = [value for value in (vickers, brinell) if value is not None]
-    if len(values) != 1:
-        raise CaseError("give one hardness, --hv or --hb")
-    hardness = values[0]
-    if not (math.isfinite(hardness) and hardness > 0):
-        raise CaseError(f"hardness {hardness:g}, must be > 0")
-    if vickers is not None:
-        return Indentation(hardness * VICKERS, PYRAMID)
-    x = BRINELL_DENT if dent_ratio is None else dent_ratio
-    if not 0.0 < x <= 1.0:
-        raise CaseError(f"--dent-ratio {x:g}, must lie in (0, 1]")
-    return Indentation(hardness * KGF_PER_MM2 * 2.0 / (1.0 + math.sqrt(1.0 - x**2)), x)
-
-
-def specimen(body: Body, target: Body) -> Body:
-    """The body that the hardness belongs to: the lower yield stress, else the lower modulus."""
-    return min((b for b in (body, target) if not b.rigid), key=lambda b: (b.yield_stress or math.inf, b.young_modulus))
-
 
 EXPONENT = "hardening_exponent"
 LARGEST_EXPONENT = 0.999
@@ -151,14 +118,6 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
         raise CaseError(f"e_n = {e_n:g} at {speed:g} m/s: no strength between {LEAST_STRENGTH:g} and 1 of E* gives it")
     strength = math.exp(bisect(lambda middle: restitution(middle) < e_n, low, high)[0])
     return uncalibrated.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
-
-
-def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
-    """The strength from a hardness test of the softer body of the case. Raises CaseError."""
-    uncalibrated = _uncalibrated(path)
-    return uncalibrated.result(
-        strength_of_hardness(uncalibrated.law, test, specimen(*bodies(uncalibrated.case)), source), None, source
-    )
 
 
 CURVE = {"depth": "m", "force": "N"}  # columns of an indentation curve

@@ -147,7 +147,7 @@ def fit(
     text, place = (scene.text, scene.place) if isinstance(scene, LoadedCase) else (portable_text(scene), scene)
     data = tomllib.loads(text)
     if not is_scene(data):
-        raise CaseError(f"{place}: --target is a number of a scene's results; for impacts give --e-n, --hv or --hb")
+        raise CaseError(f"{place}: --target is a number of a scene's results; for impacts give --e-n or --measured")
     if not 0.0 < tolerance < 1.0:
         raise CaseError(f"--tolerance {tolerance:g}, must lie in (0, 1)")
     if not targets or not 1 <= len(free) <= MOST:

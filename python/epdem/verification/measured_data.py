@@ -19,12 +19,13 @@ from ..case.impact import Case, parse
 from ..case.toml import error_context, read_toml
 from ..engines import ImpactEngine
 from ..errors import CaseError
-from ..impacts.experiment import Experiment, bodies, experiment
+from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..jobs.engine import require
 from ..laws.strengths import default_numbers, find_law, strength_of_hardness
-from ..studies.calibrate import EXPONENT, hardness_test, specimen
+from ..studies.calibrate import EXPONENT
+from ..theory.indentation import PYRAMID, VICKERS, Indentation
 from .models import engine
 from .runner import STUDIES, Progress, Row, compare_impacts, run, silent
 
@@ -100,8 +101,8 @@ def case_of(measured: Measured, material: str, value: float, speeds: Sequence[fl
     data["impact"]["speeds"] = [f"{v!r} m/s" for v in speeds]
     if measured.given == "hardness" and find_law(law).strength:
         numbers = default_numbers(law)
-        body = specimen(*bodies(parse(data, path)))
-        value = strength_of_hardness(numbers, hardness_test(vickers=value), body, f"HV {value:g}") / numbers.ratio
+        solid, test = parse(data, path).materials[material], Indentation(value * VICKERS, PYRAMID)
+        value = strength_of_hardness(numbers, test, solid, f"HV {value:g}") / numbers.ratio
     if measured.given == "yield_stress" or find_law(law).strength:
         data["materials"][material]["yield_stress"] = f"{value!r} Pa"
     return parse(data, path)
