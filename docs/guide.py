@@ -39,7 +39,6 @@ OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)#]+)(?:#[^)]*)?\)")
 
 OF_OTHER_KEYS = {  # symbol, range and default of keys that are no parameters of a law
     "compaction": ("", "`true`, `false`", "`false`"),
-    "meyer_index": ("n", "[2, 3), in place of x = n - 2", "2"),
 }
 
 

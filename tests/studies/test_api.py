@@ -115,13 +115,11 @@ def test_deck_and_command_write_the_same_files(ball, tmp_path):
     assert scene.replace({"scene.count": 7}).model.scene.count == 7 and scene.model.scene.count == 1500
 
 
-def test_compaction_and_index_are_replaced_like_all_keys(ball):
+def test_compaction_is_replaced_like_all_keys(ball):
     press = Scene.from_toml(ROOT / "cases/compaction_powder.toml").replace(law={"name": "cavity"})
     grown = press.replace({"law.compaction": True})
     assert grown.model.law.parameters() == {"compaction": True}
     assert grown.replace({"law.compaction": False}).model.law.parameters() == {"compaction": False}
-    hard = ball.replace(law={"name": "meyer", "hardening_exponent": 0.1}).replace({"law.meyer_index": 2.3})
-    assert hard.model.law.parameters() == {"meyer_index": 2.3}
     with pytest.raises(CaseError, match=r"^compaction_powder: law.compaction: law meyer has none"):
         grown.replace({"law.name": "meyer"})
     with pytest.raises(CaseError, match=r"^ball: law.hardening_exponent: law thornton has no such parameter"):

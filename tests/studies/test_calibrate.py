@@ -320,25 +320,6 @@ def test_a_law_that_hardens_has_the_measured_mean_pressure_in_the_hardness_test(
         p_y = of_hardness(path, test)
         q = 0.4 * 2 * 208e9 / (1 - 0.3**2) / (math.pi * p_y)
         assert 2 / 3 * p_y * (1 + 3 / (2 + x) * (q ** (2 + x) - 1)) / q**2 == pytest.approx(test.pressure, rel=1e-9)
-        index = path.read_text().replace(f"hardening_exponent = {x}", f"meyer_index = {2 + x}")
-        path.write_text(index)
-        assert of_hardness(path, test) == pytest.approx(p_y, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("meyer_index = 1.9", r"law.meyer_index = 1.9, must lie in \[2, 3\)"),
-        ("meyer_index = 3.0", r"law.meyer_index = 3, must lie in \[2, 3\)"),
-        ("meyer_index = 3.5", r"law.meyer_index = 3.5, must lie in \[2, 3\)"),
-        ("meyer_index = 2.1\nhardening_exponent = 0.1", "both hardening_exponent and meyer_index are given"),
-    ],
-)
-def test_a_wrong_meyer_index_is_refused(line, said, tmp_path):
-    path = with_law(tmp_path, "meyer")
-    path.write_text(path.read_text().replace('name = "meyer"\n', f'name = "meyer"\n{line}\n'))
-    with pytest.raises(CaseError, match=said):
-        experiment(load(path))
 
 
 def indentation(tmp_path, p_y, noise=0.0, unit=(1e9, 1e3), deepest=100.0):

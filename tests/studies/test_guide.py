@@ -193,7 +193,7 @@ def test_the_reference_of_case_files_has_every_key_of_our_cases():
         "output.restarts",
         "numerics.skin",
     } <= keys
-    for law, key in (("cavity", "compaction"), ("meyer", "meyer_index"), ("thornton", "yield_pressure_ratio")):
+    for law, key in (("cavity", "compaction"), ("thornton", "yield_pressure_ratio")):
         assert f"| {law} | `law.{key}` |" in guide.cases()
     for path in sorted((ROOT / "cases").glob("*.toml")):
         for table, entries in read_toml(path).items():

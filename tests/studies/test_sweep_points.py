@@ -134,7 +134,7 @@ def test_the_keys_of_a_law_are_those_that_a_case_may_give(law):
     candidates = {p.name: p for one in declarations().values() for p in one.parameters}
     values = {name: 0.5 if p.unit == "1" else f"1 {p.unit}" for name, p in candidates.items()}
     values |= {f"{one.strength}_ratio": 2.0 for one in declarations().values() if one.strength}
-    values |= {"compaction": True, "meyer_index": 2.5, "first_yield_ratio": 1.6, "plastic_ratio": 2.8}
+    values |= {"compaction": True, "first_yield_ratio": 1.6, "plastic_ratio": 2.8}
     taken = set()
     for key, value in values.items():
         with contextlib.suppress(CaseError):
@@ -142,26 +142,13 @@ def test_the_keys_of_a_law_are_those_that_a_case_may_give(law):
             taken.add(f"law.{key}")
     keys = keys_of(law_with(law))
     assert {key for key in keys if key.startswith("law.")} == taken | {"law.name"}
-    assert "law.meyer_index" not in keys or keys["law.meyer_index"].unit == "1"
-
-
-def test_a_point_has_the_exponent_or_the_index_that_it_sets():
-    for given, key, values in (
-        ({"hardening_exponent": 0.1}, "law.meyer_index", "2.2..2.4:2"),
-        ({"meyer_index": 2.1}, "law.hardening_exponent", "0.2,0.4"),
-        ({}, "law.meyer_index", "2.2,2.4"),
-    ):
-        sweep = plan(tomlkit.dumps(law_with("meyer", **given)), {key: values}, engines=["embedded"])
-        cases = [parse(sweep.data(n), "x") for n in (1, 2)]
-        assert [experiment(c).law.parameters["hardening_exponent"] for c in cases] == pytest.approx([0.2, 0.4])
-        assert [parse(tomlkit.parse(sweep.text(n)).unwrap(), "x") for n in (1, 2)] == cases
 
 
 def test_a_sweep_of_laws_has_the_keys_of_the_laws_that_it_chooses(tmp_path):
-    sets = {"law.meyer_index": "2.2,2.4", "law.name": "meyer"}
+    sets = {"law.hardening_exponent": "0.2,0.4", "law.name": "meyer"}
     sweep = plan(tomlkit.dumps(law_with("thornton")), sets, engines=["embedded"])
     exponents = [experiment(parse(sweep.data(n), "x")).law.parameters["hardening_exponent"] for n in (1, 2)]
-    assert exponents == pytest.approx([0.2, 0.4]) and sweep.units == {"law.meyer_index": "1", "law.name": None}
+    assert exponents == pytest.approx([0.2, 0.4]) and sweep.units == {"law.hardening_exponent": "1", "law.name": None}
     (tmp_path / "points.csv").write_text("law.name,law.hardening_exponent\nmeyer,0.1\nthornton,0.1\n")
     both = plan(tomlkit.dumps(law_with("thornton")), {}, engines=["embedded"], table=tmp_path / "points.csv")
     assert check(both, 1) is None and "law.hardening_exponent" in str(check(both, 2))

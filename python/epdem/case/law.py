@@ -12,8 +12,6 @@ from .fields import LawChoice, Material
 from .messages import cut_quotes
 from .units import read_number
 
-EXPONENT, INDEX = "hardening_exponent", "meyer_index"
-
 
 def law_keys(law: Declaration) -> dict[str, str | None]:
     """The SI unit of each key that [law] can have beside its name; None for true or false."""
@@ -25,9 +23,8 @@ def law_keys(law: Declaration) -> dict[str, str | None]:
 
 def alternatives(law: Declaration, key: str) -> tuple[str, ...]:
     """The keys of which only one may be given, if `key` is one of them."""
-    pairs = [(EXPONENT, INDEX)] if any(p.name == EXPONENT for p in law.parameters) else []
-    pairs += [(law.strength, f"{law.strength}_ratio")] if law.strength else []
-    return next((pair for pair in pairs if key in pair), ())
+    pair = (law.strength, f"{law.strength}_ratio") if law.strength else ()
+    return pair if key in pair else ()
 
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
@@ -35,7 +32,7 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
 
     A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress, the
     work of adhesion as `work_of_adhesion = "0.1 J/m^2"` for all pairs or by the surface energies of the materials;
-    finite_strain = true or false stands for its number, meyer_index = 2 + x for hardening_exponent = x.
+    finite_strain = true or false stands for its number.
     compaction = true or false belongs to the laws that declare it.
     """
     law = find_law(name)
@@ -56,8 +53,6 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
             raise CaseError(f"law.{key}: law {name} has no such parameter; it has {has}")
         if (both := alternatives(law, key)) and all(other in given for other in both):
             raise CaseError(f"law: both {' and '.join(both)} are given; keep one")
-    if INDEX in given:
-        given = _without_index(given)
     strength, ratio = law.strength, f"{law.strength}_ratio"
     return LawNumbers(
         name,
@@ -85,11 +80,3 @@ def check_law(law: LawChoice, materials: Mapping[str, Material], place: object) 
                 raise CaseError(f"both law.{key} and materials.{name}.{own} are given, each the strength; keep one")
     except CaseError as error:
         raise CaseError(f"{place}: {cut_quotes(str(error))}") from None
-
-
-def _without_index(given: dict[str, Any]) -> dict[str, Any]:
-    """The numbers of a law with hardening_exponent = meyer_index - 2 in place of meyer_index."""
-    index = read_number(f"law.{INDEX}", given[INDEX], "1")
-    if not 2.0 <= index < 3.0:
-        raise CaseError(f"law.{INDEX} = {index:g}, must lie in [2, 3); 2 is a metal that does not harden")
-    return {k: v for k, v in given.items() if k != INDEX} | {EXPONENT: index - 2.0}
