@@ -12,7 +12,7 @@ from ..theory.restitution import wu
 from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
 from . import oblique
 from .experiment import Experiment
-from .prediction import Prediction, predict
+from .prediction import predict
 from .run import Outcome
 
 FINE = 240  # speeds of a line of theory
@@ -64,26 +64,22 @@ def restitution(outcome: Outcome) -> Chart:
     def named(name: str, law: str) -> str:
         return f"{name}, {law}" if several else name
 
-    known, ends = outcome.case.measured, []
+    known = outcome.case.measured
     for i, law in enumerate(outcome.predictions):
         x = outcome.plans[law].experiment
         fine = _fine(x, known.speeds if known else ())
-        line = predict(fine)
-        ends.append((x, line))
-        above.append(Series(named("theory", law), fine.speed, line.e_n, i % len(PALETTE) if several else INK))
+        e_n = predict(fine).e_n
+        above.append(Series(named("theory", law), fine.speed, e_n, i % len(PALETTE) if several else INK))
         engines = rows[rows["law"] == law].groupby("engine", sort=False)
         for k, (name, part) in enumerate(engines):
             colour = (i if several else k) % len(PALETTE)
             speed = part["speed"].to_numpy()
             above.append(Series(named(str(name), law), speed, part["e_n"].to_numpy(), colour, None, k))
             below.append(Series("", speed, _visible(part["e_n_error"]), colour, None, k))
-    fit = ""
     v_y0, plastic = first_yield(x), any(p.yields for p in outcome.predictions.values())
     if plastic and fine.speed[-1] > 100 * v_y0 and x.viscous_restitution is None:
         beyond = fine.speed[fine.speed >= 100 * v_y0]
-        values = wu(beyond, v_y0=v_y0)
-        above.append(Series("finite-element fit, eq. 8.88", beyond, values, INK, "dash"))
-        fit = _beside_fit(float(values[-1]), ends)
+        above.append(Series("finite-element fit, eq. 8.88", beyond, wu(beyond, v_y0=v_y0), INK, "dash"))
     if known:
         above.append(Series("measured", np.array(known.speeds), np.array(known.e_n), INK, None, MEASURED))
     below.append(_tolerance(fine.speed, outcome.case.check.e_n))
@@ -92,24 +88,10 @@ def restitution(outcome: Outcome) -> Chart:
         "e_n",
         outcome.case.case.title,
         f"Coefficient of restitution against impact speed: theory as lines, {said} as points. Below, the largest error "
-        f"over the starting phases; the largest of all is {rows['e_n_error'].max():.1e}.{fit}",
+        f"over the starting phases; the largest of all is {rows['e_n_error'].max():.1e}.",
         [Panel(SPEED, Axis("coefficient of restitution e_n"), above, 3.0), Panel(SPEED, _error("e_n"), below, 1.4)],
         heading="Restitution against impact speed",
     )
-
-
-def _beside_fit(fit: float, lines: list[tuple[Experiment, Prediction]]) -> str:
-    """Sentences on the deviation of each law from the finite-element fit at the last speed of its line."""
-    said = " The fit by Wu et al. 2003 begins at 100 times the speed of first yield."
-    for x, line in lines:
-        top, radius = float(line.overlap_max[-1]), float(line.radius_max[-1])
-        deviation = float(line.e_n[-1]) / fit - 1.0
-        said += (
-            f" At {line.speed[-1]:.4g} m/s e_n of {x.law.name} is {100 * abs(deviation):.0f} % "
-            f"{'above' if deviation > 0 else 'below'} the fit, with a contact area of "
-            f"{radius**2 / (x.R_star * top):.1f} pi R* alpha;"
-        )
-    return f"{said[:-1]}, which is 2 pi R* alpha in the fully plastic contact of the fit."
 
 
 def _slip_line(x: Experiment, speed: float, psi_1: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

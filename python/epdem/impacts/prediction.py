@@ -87,7 +87,7 @@ def predict(experiment: Experiment) -> Prediction:
         yield_speeds={material: float(speed) for material, speed in first_yield.items() if speed is not None},
         rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
         caveats=(
-            *validity.caveats(law, **pair),
+            *law.caveats(**pair),
             *_turning(x, columns["contact_time"], columns["overlap_max"]),
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain"], x.speed)),

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from ..base import __version__
@@ -15,13 +14,12 @@ from ..base.paths import library_hash, product_hash
 from ..base.tables import unit_of
 from ..engines.citations import citations
 from ..impacts import charts
-from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
 from ..impacts.report import against_measured, largest_errors, yielding
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
-from ..report.chart import PALETTE, Axis, Chart, Panel, Series
+from ..report.chart import Axis, Chart, Panel, Series
 from ..report.page import NAME, Facts, Listing, Page, Part, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
@@ -227,7 +225,7 @@ def write_sweep_page(result: SweepOutcome, found: Sequence[str] = ()) -> Path:
     units = table.attrs.get("units", {})
     failed = table[table["status"] == FAILED][["point", "folder", "reason"]]
     said = f"{len(sweep.points)} points on {', '.join(sweep.engines)}: {result.count(DONE)} done, {len(failed)} failed."
-    parts: list[Part] = [*(_by_key(result, units) if sweep.scene else [_by_speed(result)])]
+    parts: list[Part] = [*_by_key(result, units)] if sweep.scene else []
     parts += [Rows("Failed points", failed)] if len(failed) else []
     rows = table.drop(columns=["folder", "reason"])
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
@@ -235,25 +233,6 @@ def write_sweep_page(result: SweepOutcome, found: Sequence[str] = ()) -> Path:
     title = f"Sweep of {sweep.name}"
     page = Page(title, [said, *found], parts, passed=result.passed, command=command(), warnings=result.warnings)
     return write_study_page(page, result.folder)
-
-
-def _evenly(values: np.ndarray) -> np.ndarray:
-    """As many of the values as there are colours, the first and the last among them."""
-    places = np.linspace(0, len(values) - 1, min(len(PALETTE), len(values))).round().astype(int)
-    return values[np.unique(places)] if len(values) else values
-
-
-def _by_speed(result: SweepOutcome) -> Chart:
-    table, series = result.table[result.table["status"] == DONE], []
-    for k, number in enumerate(_evenly(table["point"].unique())):
-        part = table[table["point"] == number]
-        keys = ", ".join(f"{name.rsplit('.', 1)[-1]} = {v}" for name, v in result.sweep.points[number - 1].items())
-        for i, ((engine, law), rows) in enumerate(part.groupby(["engine", "law"], sort=False)):
-            speed, label = rows["speed"].to_numpy(float), f"{engine}, {law}: {keys}"
-            series.append(Series("", speed, rows["e_n_theory"].to_numpy(float), k))
-            series.append(Series(label, speed, rows["e_n"].to_numpy(float), k, None, i))
-    alt = "Coefficient of restitution of chosen points against speed: theory as lines, engines as points."
-    return Chart("sweep", "Restitution of chosen points", alt, [Panel(SPEED, Axis("e_n"), series)])
 
 
 def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
