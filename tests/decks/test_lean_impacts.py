@@ -20,6 +20,7 @@ from epdem.engines import engine
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 CASES = Path(__file__).parents[2] / "cases"
@@ -46,9 +47,6 @@ def forms() -> dict[str, tuple[Path, str | None]]:
     return found
 
 
-SOME = [pytest.param(*form, marks=[pytest.mark.thorough] * (n % 5 > 0)) for n, form in enumerate(forms().values())]
-
-
 def result(folder: Path) -> bytes | None:
     """The dumps that a deck leaves, or None if LIGGGHTS refused it."""
     dump, end = folder / "path.bin", folder / "end.bin"  # the latter for oblique impacts
@@ -61,7 +59,11 @@ def result(folder: Path) -> bytes | None:
     return dump.read_bytes() + (end.read_bytes() if end.exists() else b"")
 
 
-@pytest.mark.parametrize(("path", "law"), SOME, ids=lambda x: getattr(x, "stem", x))
+@pytest.mark.parametrize(
+    ("path", "law"),
+    [thorough(*form, unless=n % 5 == 0) for n, form in enumerate(forms().values())],
+    ids=lambda x: getattr(x, "stem", x),
+)
 def test_every_line_of_the_deck_is_needed(path, law, tmp_path):
     p = small(path, law)
     engine("liggghts").write(p, tmp_path / "whole")

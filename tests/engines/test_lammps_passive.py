@@ -11,6 +11,7 @@ from plugin_compaction import run as run_liggghts
 
 from bed import Bed, Material
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
+from marks import thorough
 
 pytestmark = needs_lammps
 
@@ -120,9 +121,7 @@ def in_numpy(frames, radius, materials):
     return F, bed
 
 
-@pytest.mark.parametrize(
-    "name", [*(pytest.param(n, marks=pytest.mark.thorough) for n in ("E/Y 30", "unlike")), "hard and soft"]
-)
+@pytest.mark.parametrize("name", [thorough("E/Y 30"), thorough("unlike"), "hard and soft"])
 def test_forces_of_unlike_spheres_are_those_of_numpy(name, tmp_path):
     """Two bodies of two sizes, errors over the largest force: largest in steps where a contact begins."""
     cluster = two_bodies(0.5)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from marks import thorough
+
 ROOT = Path(__file__).parents[2]
 # ruff and shellcheck find scripts without a suffix only by name
 SCRIPTS = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env python3")]
@@ -34,9 +36,7 @@ TOOLS = {
 }
 
 
-@pytest.mark.parametrize(
-    "command", [pytest.param(TOOLS[n], id=n, marks=[pytest.mark.thorough] * (n == "clang-tidy")) for n in TOOLS]
-)
+@pytest.mark.parametrize("command", [thorough(TOOLS[n], id=n, unless=n != "clang-tidy") for n in TOOLS])
 def test_the_tool_finds_nothing(command):
     path = f"{ROOT}/.venv/bin:/usr/bin:/bin"
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env={"PATH": path})

@@ -18,13 +18,12 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.scenes.plan import plan as scene_plan
+from marks import thorough
 from stored_decks import reasons
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 SCENES = [path for path in CASES if is_scene(read_toml(path))]  # of impacts: tests/decks/test_lean_impacts.py
 STRAIGHT = [path for path in SCENES if "stages" not in read_toml(path)["scene"]]  # a run takes one way through `until`
-
-SOME = [pytest.param(p, marks=[pytest.mark.thorough] * (p.stem != "peening_steel")) for p in STRAIGHT]
 
 # The same decks with few spheres and steps; every wall is still touched.
 SMALL = {
@@ -85,7 +84,9 @@ def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("path", SOME, ids=lambda p: p.stem)
+@pytest.mark.parametrize(
+    "path", [thorough(p, unless=p.stem == "peening_steel") for p in STRAIGHT], ids=lambda p: p.stem
+)
 def test_removing_any_line_of_a_deck_breaks_the_run_or_changes_what_it_puts_out(path, tmp_path):
     run, files = decks_of(path, tmp_path / "deck")
     found = removals(tmp_path / "deck", tmp_path / "without", run, files)

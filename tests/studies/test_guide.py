@@ -14,7 +14,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from functools import partial
 
 import pandas as pd
 import pytest
@@ -26,6 +25,7 @@ from epdem.case import scene
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError, EngineError
+from marks import thorough
 
 spec = importlib.util.spec_from_file_location("guide", ROOT / "docs/guide.py")
 guide = importlib.util.module_from_spec(spec)
@@ -35,7 +35,6 @@ FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.M | re.S)
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 ALL = [(path.name, info.split(), text) for path in PAGES for info, text in FENCE.findall(path.read_text())]
 OWN = ("upstream.md", "studies.md")  # test_plugin_upstream and test_pages run theirs
-LONG = partial(pytest.param, marks=pytest.mark.thorough)
 FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
 SMALL = {
     "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
@@ -117,7 +116,7 @@ def test_every_block_of_the_tour_runs(tmp_path):
 
 @pytest.mark.liggghts
 @pytest.mark.yade("module")
-@pytest.mark.parametrize("page", ["adhesion", "partial_slip", "yade", LONG("laws"), LONG("scenes")])
+@pytest.mark.parametrize("page", ["adhesion", "partial_slip", "yade", thorough("laws"), thorough("scenes")])
 def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     small(tmp_path)
     for _, _, text in of("jinja", f"{page}.md"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of the theory: arguments are checked once, as whole arrays; one Gauss rule, one bisection."""
+"""Numbers of the theory: arguments are checked once, as whole arrays; one Gauss rule, bisection, false position."""
 
 from collections.abc import Callable
 from functools import cache

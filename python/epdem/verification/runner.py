@@ -75,7 +75,7 @@ def compare_impacts(
 ) -> tuple[pd.DataFrame, float]:
     """Impacts of a plan compared with their prediction, one row per speed, and run time [s].
 
-    law: name in the rows, else that of the plan. Raises EngineError, and CaseError for what the engine cannot do.
+    law: name in the rows, else that of the plan. Raises EngineError, and CaseError for a plan that the engine refuses.
     """
     stage, x = run_plan(p, tool, folder), p.experiment
     rows = compare(tool.name, law or x.law.name, stage.tables["impacts"], prediction, x.check)
