@@ -37,12 +37,21 @@ def alive(process: int) -> bool:
         return False
 
 
-# Signals in a callback, where Python drops what their handler raises, and before a new process is known.
+# Signals in a callback, where Python drops what their handler raises, before a new process is known, and when a process
+# has ended but its exit code is not stored: no further wait finds it.
 IN_FORK = "os.register_at_fork(after_in_parent=signalled)\n"
 CALL = "processes.call(['sleep', '60'], Path.cwd(), log='out')"
 STOPPED_IN = {
     "fork of a program": IN_FORK + CALL,
     "fork of a pool": IN_FORK + "list(local.each(time.sleep, deque([60.0]), 1))",
+    "end of a worker": """found = os.waitpid
+def reaped(*words):
+    ended = found(*words)
+    signalled()
+    return ended
+os.waitpid = reaped
+list(local.each(abs, deque([1.0]), 1))
+""",
     "start of a program": """class Late(subprocess.Popen):
     def __init__(self, *words, **options):
         super().__init__(*words, **options)

@@ -52,8 +52,9 @@ def each(function: Callable[[Any], Any], items: deque[Any], jobs: int) -> Iterat
                 good, result = True, None
                 with contextlib.suppress(EOFError, OSError):
                     good, result = pipe.recv()
-                process.join()
-                del team[pipe]
+                with processes.uninterrupted():  # a signal within join would lose the exit code, and the process with it
+                    process.join()
+                    del team[pipe]
                 pipe.close()
                 if process.exitcode == STOPPED:
                     raise Stopped
@@ -61,12 +62,13 @@ def each(function: Callable[[Any], Any], items: deque[Any], jobs: int) -> Iterat
                     raise result
                 yield item, Died(_exit_reason(process.exitcode)) if process.exitcode else result
     finally:
-        for living, _ in team.values():
-            living.terminate()
-        for living, _ in team.values():
-            while living.exitcode is None:  # Python drops a signal that comes during a fork
-                living.join(1.0)
+        with processes.uninterrupted():
+            for living, _ in team.values():
                 living.terminate()
+            for living, _ in team.values():
+                while living.exitcode is None:  # Python drops a signal that comes during a fork
+                    living.join(1.0)
+                    living.terminate()
 
 
 def _exit_reason(code: int | None) -> str:
