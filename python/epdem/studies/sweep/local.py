@@ -52,7 +52,7 @@ def each(function: Callable[[Any], Any], items: deque[Any], jobs: int) -> Iterat
                 good, result = True, None
                 with contextlib.suppress(EOFError, OSError):
                     good, result = pipe.recv()
-                with processes.uninterrupted():  # a signal within join would lose the exit code, and the process with it
+                with processes.uninterrupted():  # a signal within join would lose the exit code
                     process.join()
                     del team[pipe]
                 pipe.close()
