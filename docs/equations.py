@@ -4,7 +4,7 @@
 Run: .venv/bin/python docs/equations.py     (a test compares the page with the code)
 
 A docstring states an equation as `Eq. 8.84 [Thornton 1997]: v_y = ...`, to the end of the paragraph. A test calls the
-function by its name; a test of a method states `# equation: curve.Curve.unloading`. CPP lists the code that
+function by its name; a test of a method states `# equation: curve.Curve.elastic_branch`. CPP lists the code that
 computes with an equation in C++.
 """
 

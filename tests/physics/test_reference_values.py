@@ -62,7 +62,7 @@ def test_mean_pressure_of_the_three_regimes():
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
 def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
     """The law's force is the pressure 8.82 summed over the circle; its slope is that of a rigid punch, 2 E* a."""
-    # equation: curve.Curve.unloading
+    # equation: curve.Curve.elastic_branch
     law = Cavity(**STEEL, Y=1e9)
     top = 3 * law.plastic_overlap
     assert law.flatness(top) == 1

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Force, radius and work of a contact without adhesion by its overlap: elastic start, loading, unloading."""
 
+from collections.abc import Callable
 from typing import ClassVar
 
 import numpy as np
@@ -99,19 +100,28 @@ class Curve(Declared):
         lost = np.maximum(self.work(alpha_max) - self.recovered_work(alpha_max), 0.0)
         return np.where(alpha_max <= self.yield_overlap, 0.0, lost)
 
-    def unloading(self, alpha: Real, alpha_max: Real) -> tuple[Array, Array]:
-        """Force [N] and contact radius [m] at alpha <= alpha_max on the elastic branch from alpha_max.
+    def elastic_branch(self, alpha_max: Real) -> Callable[[Real], tuple[Array, Array]]:
+        """Force [N] and contact radius [m] as a function of alpha <= alpha_max on the elastic branch from alpha_max.
 
         Eq. 8.82 [Mesarovic and Johnson 2000]: F/F_max = (1-tau)(1-y^2)^1.5 + (2/pi) tau (acos y - y sqrt(1-y^2)),
         a = a_max sqrt(1-y^2), A y^2 + B y = (alpha_max-alpha) E* a_max/F_max, A = 3/4 (1-tau), B = (2/pi) tau
         """
-        alpha, alpha_max = np.asarray(alpha, float), np.asarray(alpha_max, float)
-        F, a, tau = self.force(alpha_max), self.radius(alpha_max), self.flatness(alpha_max)
-        w = (alpha_max - alpha) * self.E_star * a / F
-        y = np.clip(_depth(w, tau), 0.0, 1.0)
-        rest = 1 - y * y
-        share = (1 - tau) * rest**1.5 + 2 / np.pi * tau * (np.arccos(y) - y * np.sqrt(rest))
-        return F * share, a * np.sqrt(rest)
+        top = np.asarray(alpha_max, float)
+        F, a, tau = self.force(top), self.radius(top), self.flatness(top)
+        stiffness = self.E_star * a / F
+
+        def force_and_radius(alpha: Real) -> tuple[Array, Array]:
+            y = np.clip(_depth((top - alpha) * stiffness, tau), 0.0, 1.0)
+            rest = 1 - y * y
+            root = np.sqrt(rest)
+            share = (1 - tau) * rest * root + 2 / np.pi * tau * (np.arccos(y) - y * root)
+            return F * share, a * root
+
+        return force_and_radius
+
+    def unloading(self, alpha: Real, alpha_max: Real) -> tuple[Array, Array]:
+        """Force [N] and contact radius [m] at alpha <= alpha_max on the elastic branch from alpha_max."""
+        return self.elastic_branch(alpha_max)(np.asarray(alpha, float))
 
     def unloading_force(self, alpha: Real, alpha_max: Real) -> Array:
         """Force [N] on the elastic branch below alpha_max [m]."""

@@ -5,8 +5,8 @@ m* alpha'' = -max(0, F(alpha) + c alpha'), c = 2 sqrt(5/6) zeta sqrt(2 E* a m*),
 yields (there F lies on the backbone). zeta makes the restitution of impacts that do not yield a constant of the pair
 (Tsuji, Tanaka and Ishida 1992, with the force cut off at 0): zeta = sin phi, e = exp(-(pi - 2 phi) tan phi).
 
-Near first touch and near the dent sqrt(a) goes as the 1/4 power of the overlap x above the dent. With x = L q^4 and
-dt = 4 (L/V) q^3 dtheta the motion is smooth there and at the turning point: dq/dtheta = alpha'/V.
+Where F goes as x^1.5 and a as x^0.5 (x: overlap above the dent), the motion is a damped oscillator: with u = x^(5/4)
+and a phase that grows by x^(1/4) dt, u'' + 2 zeta u' + u = 0. The branch of a flattened contact is integrated.
 """
 
 from collections.abc import Callable
@@ -54,40 +54,17 @@ def _advance(f: Rate, y: Array, h: Real) -> Array:
     return rows[-1][-1]
 
 
-def _path(f: Rate, y: Array, going: Rate) -> Array:
-    """States from y (k, n) on until going(y) <= 0 in every column, shape (steps + 1, k, n); a column then stands."""
-    path = [y]
-    while np.any(active := going(path[-1]) > 0):
-        path.append(np.where(active, _advance(f, path[-1], _STEP), path[-1]))
-        if len(path) > 2000:  # an impact takes 20 to 100
-            raise ArithmeticError("the impact does not end")
-    return np.array(path)
-
-
-def _first_zero(f: Rate, path: Array, g: Rate) -> Array:
-    """The state of each column where g first ceases to be positive after the start; its last one if it never does."""
-    ended = np.array([g(y) <= 0 for y in path[1:]])
-    start = np.where(ended.any(axis=0), ended.argmax(axis=0), len(path) - 2)
-    y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
-    place = zero(lambda h: g(_advance(f, y, h)), np.zeros(y.shape[1]), np.full(y.shape[1], _STEP))
-    return np.where(ended.any(axis=0), _advance(f, y, place), path[-1])
-
-
-def _largest(f: Rate, path: Array, g: Rate) -> Array:
-    """The largest g along the path: sampled, then by golden section in the two steps around the largest sample."""
-    samples = np.array([g(y) for y in path])
-    start = np.maximum(samples.argmax(axis=0) - 1, 0)
-    y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
-    width, golden = np.full(y.shape[1], 2 * _STEP), 0.5 * (np.sqrt(5) - 1)
-    left, right = (1 - golden) * width, golden * width
-    at_left, at_right = g(_advance(f, y, left)), g(_advance(f, y, right))
-    for _ in range(30):  # the value is flat at its summit: 1e-6 of the place is 1e-12 of the value
-        width, rises = golden * width, at_left < at_right
-        new = np.where(rises, left + golden * width, right - golden * width)
-        at_new = g(_advance(f, y, new))
-        left, right = np.where(rises, right, new), np.where(rises, new, left)
-        at_left, at_right = np.where(rises, at_right, at_new), np.where(rises, at_new, at_left)
-    return np.maximum(at_left, at_right)
+def _end(f: Rate, y: Array, going: Rate) -> Array:
+    """The state of each column of y (k, n) where going(y), positive at first, has become 0."""
+    before = y
+    for _ in range(2000):  # an impact takes 20 to 100
+        if not np.any(active := going(y) > 0):
+            break
+        before, y = np.where(active, y, before), np.where(active, _advance(f, y, _STEP), y)
+    else:
+        raise ArithmeticError("the impact does not end")
+    n = y.shape[1]
+    return _advance(f, before, zero(lambda h: going(_advance(f, before, h)), np.zeros(n), np.full(n, _STEP)))
 
 
 def _yielding_time(law: Curve, m: Array, start: Array, top: Array) -> Array:
@@ -106,34 +83,74 @@ def _yielding_time(law: Curve, m: Array, start: Array, top: Array) -> Array:
     return total
 
 
-def _elastic(share: Array, dashpot: float, q_yield: Array) -> tuple[Array, Array, Array]:
-    """Hertz contact from touch in units of L and of the impact speed; share = (L/its own undamped peak)^(5/4)."""
-    k, d = 1.25 * share**2, dashpot * np.sqrt(15 / 8) * share
+@dataclass(frozen=True)
+class _Oscillator:
+    """u'' + 2 zeta u' + u = 0 from u = 0, u' = 1: Hertz's contact with a dashpot, in units of its undamped impact."""
 
-    def force(y: Array) -> Array:
-        q, v, _ = y
-        return np.asarray(q * (k * q**5 + d * v))
+    zeta: float
 
-    def rate(y: Array) -> Array:
-        q, v, _ = y
-        return np.array([v, -4 * q**3 * force(y), 4 * q**3])
+    @property
+    def omega(self) -> float:
+        return float(np.sqrt(1 - self.zeta**2))
 
-    def loaded(y: Array) -> Array:
-        q, v, _ = y
-        return np.asarray(np.minimum(q_yield - q, np.where(v > 0, 1.0, k * q**5 + d * v)))
+    def state(self, phase: Real) -> tuple[Array, Array]:
+        """u and u'."""
+        decay, sine = np.exp(-self.zeta * phase), np.sin(self.omega * phase) / self.omega
+        return np.asarray(decay * sine), np.asarray(decay * (np.cos(self.omega * phase) - self.zeta * sine))
 
-    path = _path(rate, np.array([np.zeros_like(share), np.ones_like(share), np.zeros_like(share)]), loaded)
-    end, turn = _first_zero(rate, path, loaded), _first_zero(rate, path, lambda y: np.minimum(y[1], q_yield - y[0]))
-    inside = _largest(rate, path, lambda y: np.where(y[0] <= q_yield, force(y), 0.0))
-    return end, turn, np.maximum(inside, force(end))
+    def phase(self, ratio: float) -> float:
+        """The phase at which u'/u, which falls all the time, has this value."""
+        return float(np.arctan2(self.omega, ratio + self.zeta)) / self.omega
+
+    @property
+    def turn(self) -> float:
+        return self.phase(0.0)
+
+    @property
+    def end(self) -> float:
+        """The phase without a force."""
+        return self.phase(-0.5 / self.zeta)
+
+    @property
+    def summit(self) -> float:
+        """The phase of the largest force: 2 zeta r^2 + (6 - 20 zeta^2) r - 10 zeta = 0, r = u'/u."""
+        z = self.zeta
+        half = 3 - 10 * z * z
+        root = np.sqrt(half * half + 20 * z * z)
+        return self.phase(10 * z / (half + root) if half > 0 else (root - half) / (2 * z))
+
+    def force(self, phase: Real) -> Array:
+        """Force with the dashpot over 5/4 m v^2/L."""
+        u, rate = self.state(phase)
+        return np.asarray(u**0.2 * (u + 2 * self.zeta * rate))
+
+    def time(self, phase: Real) -> Array:
+        """Time from phase 0 on over 4/5 L/v: the integral of u^(-1/5)."""
+        half = 0.5 * np.pi / self.omega  # u vanishes at 0 and at 2 half: in w = distance^(1/5) the integrand is smooth
+
+        def between(near: Real, far: Real, sign: float) -> Array:
+            low, high = (np.asarray(x, float)[..., None] ** 0.2 for x in (near, far))
+            w = low + (high - low) * _X
+            at = w**5 if sign > 0 else 2 * half - w**5
+            u = np.exp(-self.zeta * at) * np.sin(self.omega * w**5) / self.omega
+            return np.asarray(((high - low) * 5 * w**4 * u**-0.2) @ _W)
+
+        return between(0.0, np.minimum(phase, half), 1.0) + between(2 * half - np.maximum(phase, half), half, -1.0)
 
 
 def _unload(law: Curve, top: Array, L: Array, V: Array, m: Array, dashpot: float) -> Array:
-    """The elastic branch from rest at `top`, in units of the elastic recovery (L) and of the undamped rebound (V)."""
+    """q, speed and time at the end of a rebound from rest at `top`, in units of the elastic recovery L, of the undamped
+    rebound V and of L/V.
+
+    Near the dent sqrt(a) goes as the 1/4 power of the overlap x above it. With x = L q^4 and dt = 4 (L/V) q^3 dtheta
+    the motion is smooth there and at the turning point: dq/dtheta = alpha'/V.
+    """
+    branch = law.elastic_branch(top)
+    of_force, of_dashpot = L / (m * V * V), dashpot * np.sqrt(2 * law.E_star / m) * L / V
 
     def forces(q: Array, v: Array) -> Array:
-        F, a = law.unloading(np.minimum(top - L * (1 - q**4), top), top)
-        return F * L / (m * V * V) + dashpot * np.sqrt(2 * law.E_star * a / m) * L / V * v
+        F, a = branch(np.minimum(top - L * (1 - q**4), top))
+        return of_force * F + of_dashpot * np.sqrt(a) * v
 
     def rate(y: Array) -> Array:
         q, v, _ = y
@@ -142,8 +159,19 @@ def _unload(law: Curve, top: Array, L: Array, V: Array, m: Array, dashpot: float
     def loaded(y: Array) -> Array:
         return np.where(y[0] > 0, forces(y[0], y[1]), -1.0)
 
-    path = _path(rate, np.array([np.ones_like(top), np.zeros_like(top), np.zeros_like(top)]), loaded)
-    return _first_zero(rate, path, loaded)
+    return _end(rate, np.array([np.ones_like(top), np.zeros_like(top), np.zeros_like(top)]), loaded)
+
+
+def _rebound(law: Curve, top: Array, L: Array, V: Array, m: Array, zeta: float) -> tuple[Array, Array, Array]:
+    """Overlap above the dent, speed and time at the end of a rebound from rest, in units of L, V and L/V."""
+    if np.any(law.flatness(top) != 0):
+        q, speed, time = _unload(law, top, L, V, m, 2 * np.sqrt(5 / 6) * zeta)
+        return q**4, speed, time
+    motion = _Oscillator(zeta)
+    (rest, _), (u, rate) = motion.state(motion.turn), motion.state(motion.end)
+    time = 0.8 * rest**0.2 * (motion.time(motion.end) - motion.time(motion.turn))
+    one = np.ones_like(top)
+    return (u / rest) ** 0.8 * one, rate / rest * one, time * one
 
 
 def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> DampedImpact:
@@ -157,25 +185,29 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Damp
     if zeta == 0.0:
         return DampedImpact(**{f.name: getattr(plain, f.name) for f in fields(plain)}, viscous_work=np.zeros(v.shape))
     shape, m, v = v.shape, m.ravel(), v.ravel()
-    dashpot, W = 2 * np.sqrt(5 / 6) * zeta, 0.5 * m * v * v
+    W = 0.5 * m * v * v
+    motion, own = _Oscillator(zeta), (15 * m * v * v / (16 * law.E_star * np.sqrt(law.R_star))) ** 0.4
+    (most, _), (left, rate) = motion.state(motion.turn), motion.state(motion.end)
+    top, parting, back = own * most**0.8, own * left**0.8, -v * rate
+    time, W_plastic = 0.8 * own / v * motion.time(motion.end), np.zeros_like(v)
+    unit = 1.25 * m * v * v / own
+    force_max = unit * motion.force(motion.summit)
 
-    own = (15 * m * v * v / (16 * law.E_star * np.sqrt(law.R_star))) ** 0.4  # peak overlap of Hertz without a dashpot
-    L = np.minimum(own, law.yield_overlap)
-    end, turn, peak = _elastic((L / own) ** 1.25, dashpot, (law.yield_overlap / L) ** 0.25)
-    top, back, time, parting = L * turn[0] ** 4, -v * end[1], L / v * end[2], L * end[0] ** 4
-    force_max, W_plastic = peak * m * v * v / L, np.zeros_like(v)
-
-    yielded = end[1] > 0
+    yielded = top > law.yield_overlap
     if yielded.any():
-        y, m_y = law.yield_overlap, m[yielded]
-        kinetic = 0.5 * m_y * (v * end[1])[yielded] ** 2
+        y, m_y, v_y = law.yield_overlap, m[yielded], v[yielded]
+        u_y = (y / own[yielded]) ** 1.25
+        phase, _ = bisect(lambda p: motion.state(p)[0] < u_y, u_y, motion.turn)
+        kinetic = 0.5 * m_y * (v_y * motion.state(phase)[1]) ** 2
         summit = np.asarray(law.overlap_of_work(law.work(y) + kinetic))
         given, recovery = law.recovered_work(summit), np.asarray(law.recovered_overlap(summit))
         V = np.sqrt(2 * given / m_y)
-        out = _unload(law, summit, recovery, V, m_y, dashpot)
-        time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit) + recovery / V * out[2]
-        top[yielded], back[yielded], parting[yielded] = summit, -V * out[1], summit - recovery * (1 - out[0] ** 4)
-        force_max[yielded] = np.maximum(force_max[yielded], law.force(summit))
+        x, rate, after = _rebound(law, summit, recovery, V, m_y, zeta)
+        time[yielded] = 0.8 * own[yielded] / v_y * motion.time(phase) + recovery / V * after
+        time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit)
+        top[yielded], back[yielded], parting[yielded] = summit, -V * rate, summit - recovery * (1 - x)
+        before = unit[yielded] * motion.force(np.minimum(phase, motion.summit))
+        force_max[yielded] = np.maximum(before, law.force(summit))
         W_plastic[yielded] = law.plastic_work(summit)
     work_out = 0.5 * m * back * back
     columns = {
