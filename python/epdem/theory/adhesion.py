@@ -129,11 +129,9 @@ def _time(m: Numbers, path: Path, above: Numbers) -> Numbers:
     At t it is that and the work between t and 1: polynomials of degree 15 at most, which Gauss integrates exactly.
     """
     slope, power = path
-    total = 0.0
-    for t, rest, w in zip(*_nodes(), strict=True):
-        left = above + rest * sum(wk * power(t + rest * tk) for tk, wk in zip(_T, _TW, strict=True))
-        total = total + w * np.abs(slope(t)) * np.sqrt(0.5 * m / np.maximum(left, np.finfo(float).tiny))
-    return total
+    t, rest, w = (np.reshape(x, (-1, *(1,) * np.ndim(above))) for x in _nodes())
+    left = above + rest * sum(wk * power(t + rest * tk) for tk, wk in zip(_T, _TW, strict=True))
+    return np.sum(w * np.abs(slope(t)) * np.sqrt(0.5 * m / np.maximum(left, np.finfo(float).tiny)), axis=0)
 
 
 def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numbers:
