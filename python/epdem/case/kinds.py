@@ -153,11 +153,11 @@ def _as_toml(value: Any) -> Any:
     return value
 
 
-@cache
-def _environment() -> jinja2.Environment:
+@cache  # compiling takes far longer than filling
+def _template(body: str) -> jinja2.Template:
     env = jinja2.Environment(**OPTIONS, finalize=_as_toml)
     env.globals.update(FUNCTIONS)
-    return env
+    return env.from_string(body)
 
 
 def parts(keys: Keys | Parts, output: object) -> Parts:
@@ -170,7 +170,7 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
     values = {name: getattr(keys, name) for name in keys.heads} | mixtures
     place = f"scene of kind {keys.kind!r}"
     try:
-        text = _environment().from_string(keys.body).render(values, largest=largest, output=output)
+        text = _template(keys.body).render(values, largest=largest, output=output)
         scene = tomllib.loads(text)["scene"]
     except (jinja2.TemplateError, tomllib.TOMLDecodeError, TypeError, ArithmeticError) as error:
         raise CaseError(f"{place}: {error}") from None
