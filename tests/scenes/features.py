@@ -16,6 +16,11 @@ UPRIGHT = {"diameter": "12 mm", "z": ["2 mm", "30 mm"], "center": ["0.5 mm", "0 
 SLAB = {"y": ["-9 mm", "9 mm"], "z": ["-4 mm", "40 mm"]}
 SIEVE = "opening [mm],retained [%]\n2.4,0\n2.0,40\n1.6,60\n"
 TABLE = "x,y,z,radius,material\n0,0,0.034,0.001,steel\n0.004,0,0.034,0.001,glass\n"
+# two rows of touching spheres that reach through the faces of a periodic room
+FACES = "x,y,z,radius,material\n" + "".join(
+    f"0.0099,{along},0.004,0.0015,glass\n{along},0.0099,0.004,0.0015,glass\n"
+    for along in ((n - 2.5) * 2.99e-3 for n in range(6))
+)
 FALLING = "x,y,z,radius,vz\n0,0,0.034,0.001,-0.5\n"
 HEAP = "x,y,z,radius,material,vx,vy,vz\n" + "".join(
     f"{x * 2.02e-3},{y * 2.02e-3},{z * 2.02e-3 - 3.9e-3},{r},{material},{0.3 * y},{0.2 - 0.3 * x * z},{0.4 * x - 0.2}\n"
@@ -216,7 +221,10 @@ MEASURES = {
     "centre of mass": {"kind": "center_of_mass", "axis": "x", "material": "glass"},
     "centre in a region": {"kind": "center_of_mass", "axis": "y", "region": {"x": ["-9 mm", "9 mm"]} | SLAB},
     "highest of mass": {"kind": "center_of_mass", "axis": "z"},
-    "porosity": {"kind": "porosity", "region": {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["2 mm", "9 mm"]}},
+    "porosity": {
+        "kind": "porosity",
+        "region": {"x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["2 mm", "9 mm"]},
+    },
     "speeds of impacts": {"kind": "impact_speed", "bins": 4},
     "plastic work": {"kind": "plastic_work", "bins": 4},
 }
@@ -248,6 +256,7 @@ def files(folder: Path) -> None:
     """The files that cases with these features name."""
     (folder / "sieve.csv").write_text(SIEVE)
     (folder / "table.csv").write_text(TABLE)
+    (folder / "faces.csv").write_text(FACES)
     (folder / "falling.csv").write_text(FALLING)
     (folder / "heap.csv").write_text(HEAP)
     (folder / "stone.stl").write_text(stl_text("stone", tetrahedron(5.0)))
@@ -258,6 +267,8 @@ def case_of(chosen: dict[str, str]) -> dict:
     walls = [FLOOR | {"at": "-5 mm"}, LID, *WALLS[chosen["walls"]]]
     fill = {"name": "bed", "region": REGION, "particles": MIXTURES[chosen["mixture"]]} | AMOUNTS[chosen["amount"]]
     bodies = BODIES[chosen["bodies"]]
+    if (chosen["room"], chosen["walls"], chosen["bodies"]) == ("periodic", "planes", "table"):
+        bodies = {"fill": [{"name": "table", "file": "faces.csv"}]}
     first, second = PHASES[chosen["phases"]]
     scene = CASE["scene"] | ROOMS[chosen["room"]] | {"wall": walls, "row": ROWS[chosen["rows"]]}
     scene |= {"fill": [fill, *bodies.get("fill", [])], "body": bodies.get("body", [])}

@@ -8,6 +8,7 @@ units, a sweep and a softened copy with the case itself.
 import math
 import os
 import re
+import shutil
 import tomllib
 from itertools import pairwise
 from typing import Literal, get_args, get_origin
@@ -18,12 +19,15 @@ import tomlkit
 from features import AMOUNTS, CHOICES, DENSITY, MIXTURES, SLOTS, case_of, files
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
+from other_routes import assert_forces, assert_frames, porosity
 from pydantic import BaseModel
-from scene_runs import run, write_case
+from scene_runs import run, write_case, write_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import SceneCase, parse
 from epdem.engines import scene_engine
+from epdem.engines.liggghts import launcher, resume
+from epdem.engines.liggghts import tables as liggghts_tables
 from epdem.errors import CaseError
 from epdem.laws.strengths import find_law
 from epdem.scenes import filling, measures
@@ -279,6 +283,7 @@ def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
 
 
 @tries(15)
+@example(chosen=PLAIN | {"phases": "until a lower force"}, factor=4.0)
 @given(chosen=CHOICES, factor=st.sampled_from([4.0, 100.0]))
 def test_a_softened_copy_scales_every_quantity_by_its_unit(chosen, factor, folder):
     """Moduli by 1/k, strengths by k^-0.8, forces and works of adhesion by k^-0.4; finite strain by k^0.14; the overlap
@@ -316,12 +321,14 @@ def value_of(data, key):
 
 
 RANKS = st.sampled_from([1, 2])
+THROUGH_FACES = {"room": "periodic", "bodies": "table", "measure": "porosity", "output": "contacts"}
 
 
 @pytest.mark.liggghts
 @tries(8, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"contact": "cohesion"}, ranks=1)  # of all models cohesion alone has a history
 @example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"}, ranks=1)
+@example(chosen=PLAIN | THROUGH_FACES, ranks=2)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
@@ -340,6 +347,8 @@ def test_yade_runs_what_is_drawn(chosen, folder):
 
 @needs_lammps
 @tries(8, phases=[Phase.explicit, Phase.generate])
+@example(chosen=PLAIN | THROUGH_FACES, ranks=2)
+@example(chosen=PLAIN | {"room": "periodic", "walls": "planes across x and y"}, ranks=1)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_lammps_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
@@ -405,8 +414,36 @@ def assert_runs(tool, chosen, folder, ranks=1):
             assert last["mass"].groupby(materials).sum().to_dict() == pytest.approx(
                 {m: mass for m, mass in expected.items() if mass}, rel=1e-6
             )
+        assert_frames(p, tables)
+        if len(tables.get("contacts", [])) and chosen["dashpot"] == "no dashpot" and chosen["contact"] != "cohesion":
+            assert_forces(p, tables["contacts"], tables["particles"])
     kind = SLOTS["measure"][chosen["measure"]] or {}
     if kind.get("kind") in ("force", "torque"):
         assert len(tables["rows"]["measured"]) == len(tables["rows"])
     elif "bins" not in kind and kind:
-        assert np.isfinite(tables["measures"]["measured"].iloc[-1])
+        measured = tables["measures"]["measured"].iloc[-1]
+        assert np.isfinite(measured)
+        if kind["kind"] == "porosity":
+            assert measured == pytest.approx(porosity(p, last), abs=0.01)
+
+
+@pytest.mark.liggghts
+@tries(3, phases=[Phase.explicit, Phase.generate])
+@example(chosen=PLAIN | {"output": "restarts", "phases": "wall moves", "law": "cavity", "room": "periodic"}, ranks=2)
+@given(chosen=CHOICES, ranks=RANKS)
+def test_a_drawn_scene_goes_on_from_a_restart_file_to_the_same_bits(chosen, ranks, folder):
+    chosen = chosen | {"output": "restarts"}
+    assume(not sentences_against(chosen))
+    place = folder / "continued"
+    shutil.rmtree(place, ignore_errors=True)
+    place.mkdir()
+    p = write_deck(parse(case_of(chosen), folder / "case.toml"), place)
+    assume(not p.ends_early)
+    launcher.run("in.scene", place, ranks=ranks)
+    whole = liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1])
+    resume.write_resume(
+        p, place, min(int(re.search(r"\d+", file.name).group()) for file in place.glob("restart.*.bin"))
+    )
+    launcher.run("in.resume", place, ranks=ranks)
+    again = liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1])
+    assert again.equals(whole)

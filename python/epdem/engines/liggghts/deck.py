@@ -199,6 +199,12 @@ class SceneDeck:
     resumed_phase: int = 0
     comes: bool = False
 
+    @property
+    def starts_empty(self) -> bool:
+        """Whether no sphere comes with the first phase."""
+        first = self.plan.phases[0].name
+        return not self.plan.scene.table and all(f.phase != first for f in self.plan.insertions)
+
 
 def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""

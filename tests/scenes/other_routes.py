@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Numbers of a scene's tables by routes that the product does not take."""
+
+import numpy as np
+import pytest
+
+from epdem.scenes.model import pair_law
+
+
+def assert_frames(p, tables):
+    """Each recorded phase ends with a frame and a row; the row has the kinetic energy of the frame's spheres."""
+    spheres, rows = tables["particles"], tables["rows"].set_index("step").query("particles > 0")["kinetic_energy"]
+    recorded = {phase.name for phase in p.scene.phase if phase.record}
+    ends = tables["phases"].set_index("phase")["end"]
+    ends = ends[ends.index.isin(recorded) & ends.isin(rows.index)]
+    assert set(ends) <= set(spheres["step"]) and ends.iloc[-1] == rows.index[-1]
+    energy = (0.5 * spheres["mass"] * (spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1)).groupby(spheres["step"]).sum()
+    assert rows[energy.index].to_numpy() == pytest.approx(energy.to_numpy(), rel=1e-6)
+
+
+def assert_forces(p, contacts, spheres):
+    """The normal forces that the engine computes are those of theory at the overlaps so far."""
+    last = contacts[contacts["step"] == contacts["step"].max()]
+    ball = spheres[spheres["step"] == last["step"].iloc[0]].set_index("id")
+    normal, force = (last[[f"{name}_{axis}" for axis in "xyz"]].to_numpy() for name in ("normal", "force"))
+    found = (normal * force).sum(axis=1)
+    assert found == pytest.approx(last["force"].to_numpy(), abs=1e-6 * np.abs(found).max())
+    for row in last[last["wall"] == ""].head(20).itertuples():
+        one, other = ball.loc[row.i], ball.loc[row.j]
+        spec, E_star = pair_law(p.case, *(p.model.types[int(b["type"]) - 1].material for b in (one, other)))
+        R_star = one["radius"] * other["radius"] / (one["radius"] + other["radius"])
+        if spec.adheres or p.model.compaction:
+            continue
+        law = spec.theory(E_star=E_star, R_star=R_star, radius=max(one["radius"], other["radius"]))
+        dent = law.residual_overlap(row.delta_max)
+        expected = float(law.unloading_force(row.overlap, row.delta_max)) if row.overlap > dent else 0.0
+        assert row.force == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(found).max())
+
+
+def porosity(p, frame):
+    """Share of points of a measure's region, drawn at random, that lie in no sphere and no image of one."""
+    limits = np.array(p.scene.measure[0].region.limits).reshape(3, 2)
+    points = np.random.default_rng(1).uniform(*limits.T, (20_000, 3))
+    length = np.array([high - low for low, high in (getattr(p.scene.room, axis) for axis in "xyz")])
+    free = np.ones(len(points), bool)
+    for sphere in frame.itertuples():
+        away = points - (sphere.x, sphere.y, sphere.z)
+        if p.scene.periodic:
+            away[:, :2] -= length[:2] * np.round(away[:, :2] / length[:2])
+        free &= (away**2).sum(axis=1) > sphere.radius**2
+    return free.mean()
