@@ -227,6 +227,9 @@ def test_the_plan_and_the_deck_have_what_the_case_requests(chosen, folder):
     assert not re.search(r"(?<![\w.])(nan|inf|None)(?![\w.])", text)
     ends = [0, *(phase.end for phase in p.phases)]
     assert all(a < b and (b - a) % p.every == 0 for a, b in pairwise(ends)) and ends[-1] == p.steps
+    given = chosen["numerics"] != "error" or chosen["phases"] == "own step"  # then a row ends next to the duration
+    off = np.abs(p.phase_table["end_time"] - p.phase_table["begin_time"] - [phase.seconds for phase in p.scene.phase])
+    assert (off <= [0.501 * p.every * phase.time_step if given else 1e-12 for phase in p.phases]).all()
 
 
 SMALLER = {"mm": 1e3, "m/s": 1e3, "ms": 1e3, "MPa": 1e3, "kg/m^3": 1e3, "g": 1e3, "mN": 1e3, "s": 1e3, "m^2/N": 1e6}
@@ -329,6 +332,7 @@ THROUGH_FACES = {"room": "periodic", "bodies": "table", "measure": "porosity", "
 @example(chosen=PLAIN | {"contact": "cohesion"}, ranks=1)  # of all models cohesion alone has a history
 @example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"}, ranks=1)
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
+@example(chosen=PLAIN | {"amount": "thrown later", "phases": "until rest"}, ranks=1)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
@@ -383,7 +387,7 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
         places.append(spheres[["x", "y", "z", "vx", "vy", "vz"]])
     assert places[0].index.equals(places[1].index)
     # m and m/s. A sphere that moves by 0.5 % of its radius in the step in which it parts has no last pull in LIGGGHTS
-    limit = 1e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6
+    limit = 3e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6
     assert np.abs(places[0] - places[1]).to_numpy().max() < limit
 
 
@@ -430,6 +434,7 @@ def assert_runs(tool, chosen, folder, ranks=1):
 @pytest.mark.liggghts
 @tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"output": "restarts", "phases": "wall moves", "law": "cavity", "room": "periodic"}, ranks=2)
+@example(chosen=PLAIN | {"output": "restarts", "amount": "thrown later", "numerics": "lists"}, ranks=1)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_a_drawn_scene_goes_on_from_a_restart_file_to_the_same_bits(chosen, ranks, folder):
     chosen = chosen | {"output": "restarts"}
@@ -441,9 +446,8 @@ def test_a_drawn_scene_goes_on_from_a_restart_file_to_the_same_bits(chosen, rank
     assume(not p.ends_early)
     launcher.run("in.scene", place, ranks=ranks)
     whole = liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1])
-    resume.write_resume(
-        p, place, min(int(re.search(r"\d+", file.name).group()) for file in place.glob("restart.*.bin"))
-    )
-    launcher.run("in.resume", place, ranks=ranks)
-    again = liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1])
-    assert again.equals(whole)
+    *steps, _ = sorted(int(re.search(r"\d+", file.name).group()) for file in place.glob("restart.*.bin"))
+    for step in steps[-2:]:
+        resume.write_resume(p, place, step)
+        launcher.run("in.resume", place, ranks=ranks, append=True)
+        assert liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1]).equals(whole)

@@ -152,7 +152,7 @@ def stop_condition(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], 
         return StopCondition(0, run.steps // p.every, "", "", void) if void else None
     first = first_look(p, run)
     if until.kinetic_energy is not None:
-        formula, sign = "ke/atoms", "<"
+        formula, sign = "ke/(atoms+(atoms==0))+1e99*(atoms==0)", "<"  # a room without spheres waits for them
     elif until.count is not None:
         formula, sign = "atoms", "<="
     else:
