@@ -91,10 +91,11 @@ class _Oscillator:
 
     @property
     def omega(self) -> float:
+        """Frequency of the sine, over the phase."""
         return float(np.sqrt(1 - self.zeta**2))
 
     def state(self, phase: Real) -> tuple[Array, Array]:
-        """u and u'."""
+        """u and u' at a phase."""
         decay, sine = np.exp(-self.zeta * phase), np.sin(self.omega * phase) / self.omega
         return np.asarray(decay * sine), np.asarray(decay * (np.cos(self.omega * phase) - self.zeta * sine))
 
@@ -104,6 +105,7 @@ class _Oscillator:
 
     @property
     def turn(self) -> float:
+        """The phase of the largest overlap."""
         return self.phase(0.0)
 
     @property
