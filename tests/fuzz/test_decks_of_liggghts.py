@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drawn_decks import ONE_BY_ONE, Deck, difference, merge, read_features, rows, run, spheres, stl
-from hypothesis import assume, given, note
+from hypothesis import assume, example, given, note
 from hypothesis import strategies as st
 
 from epdem.engines.liggghts import launcher
@@ -190,6 +190,7 @@ def end(deck, folder):
     return None if code else np.loadtxt(files["end.txt"].decode().splitlines()[9:], ndmin=2)
 
 
+@example(seed=25380)  # contacts slide where the second run begins
 @ONE_BY_ONE
 @given(seed=st.integers(0, 10**9))
 def test_order_and_numbers_of_spheres_change_no_motion(seed, tmp_path_factory):
