@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from epdem.scenes.columns import last_frame
 from epdem.scenes.model import pair_law
 
 
@@ -19,8 +20,8 @@ def assert_frames(p, tables):
 
 
 def assert_forces(p, contacts, spheres):
-    """The normal forces that the engine computes are those of theory at the overlaps so far."""
-    last = contacts[contacts["step"] == contacts["step"].max()]
+    """The normal forces of the engine in the last frame are the forces of theory at the overlaps of this frame."""
+    last = last_frame(contacts)
     ball = spheres[spheres["step"] == last["step"].iloc[0]].set_index("id")
     normal, force = (last[[f"{name}_{axis}" for axis in "xyz"]].to_numpy() for name in ("normal", "force"))
     found = (normal * force).sum(axis=1)

@@ -7,6 +7,7 @@ from pathlib import Path
 from epdem.base.files import write_texts
 from epdem.case.scene import SceneCase
 from epdem.engines import scene_engine
+from epdem.engines.restarts import restart_files
 from epdem.scenes import run as scene_run
 from epdem.scenes.plan import ScenePlan, plan
 
@@ -38,3 +39,8 @@ def write_deck(case: SceneCase, folder: Path) -> ScenePlan:
 def run(path: Path, engine: str = "liggghts", **options) -> scene_run.SceneOutcome:
     """Run a case file on an engine."""
     return scene_run.run(path, scene_engine(engine), **options)
+
+
+def restart_steps(folder: Path) -> list[int]:
+    """Steps of the restart files in a folder."""
+    return [step for step, _ in restart_files(folder)]

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes with [law] compaction: energy, contacts by growth, restart; what does not go with it."""
 
-import re
-
 import numpy as np
 import pytest
 from parts_cases import FLOOR, parts
-from scene_runs import run, write_case, write_deck
+from scene_runs import restart_steps, run, write_case, write_deck
 from stored_runs import CASES
 
 from engines.lammps_decks import needs_lammps
@@ -57,7 +55,7 @@ def test_a_continued_press_ends_bitwise_where_the_uninterrupted_one_does(tmp_pat
         return table[table["step"] == p.steps].to_numpy()
 
     whole = last()
-    step = sorted(int(re.search(r"\d+", path.name).group()) for path in tmp_path.glob("restart.*.bin"))[-4]
+    step = restart_steps(tmp_path)[-4]
     for frame in tmp_path.glob("particles.*.bin"):
         frame.unlink()
     resume.write_resume(p, tmp_path, step)

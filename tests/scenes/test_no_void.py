@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case, write_deck
+from scene_runs import restart_steps, run, write_case, write_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
@@ -73,7 +73,7 @@ def test_a_continued_press_ends_in_the_same_row(tmp_path):
     launcher.run("in.scene", tmp_path)
     ends = log.ends(tmp_path / launcher.OUT)
     assert ends == {"press": expected_end(p)}
-    for step in sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))[-3:]:
+    for step in restart_steps(tmp_path)[-3:]:
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
         assert log.ends(tmp_path / launcher.OUT) == ends

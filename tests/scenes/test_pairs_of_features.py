@@ -21,7 +21,7 @@ from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
 from other_routes import assert_forces, assert_frames, porosity
 from pydantic import BaseModel
-from scene_runs import run, write_case, write_deck
+from scene_runs import restart_steps, run, write_case, write_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import SceneCase, parse
@@ -387,7 +387,7 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
         places.append(spheres[["x", "y", "z", "vx", "vy", "vz"]])
     assert places[0].index.equals(places[1].index)
     # m and m/s. A sphere that moves by 0.5 % of its radius in the step in which it parts has no last pull in LIGGGHTS
-    limit = 3e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6
+    limit = 1e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6
     assert np.abs(places[0] - places[1]).to_numpy().max() < limit
 
 
@@ -446,8 +446,9 @@ def test_a_drawn_scene_goes_on_from_a_restart_file_to_the_same_bits(chosen, rank
     assume(not p.ends_early)
     launcher.run("in.scene", place, ranks=ranks)
     whole = liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1])
-    *steps, _ = sorted(int(re.search(r"\d+", file.name).group()) for file in place.glob("restart.*.bin"))
+    *steps, _ = restart_steps(place)
     for step in steps[-2:]:
+        (place / f"particles.{p.steps}.bin").unlink()
         resume.write_resume(p, place, step)
         launcher.run("in.resume", place, ranks=ranks, append=True)
         assert liggghts_tables.particles(p, place, without=p.frame_steps(p.frames)[:-1]).equals(whole)

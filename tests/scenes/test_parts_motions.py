@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case, write_deck
+from scene_runs import restart_steps, run, write_case, write_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
@@ -191,7 +191,7 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     launcher.run("in.scene", tmp_path)
     ends = log.ends(tmp_path / launcher.OUT)
     whole = tables.particles(p.with_ends(ends), tmp_path)
-    files = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))
+    files = restart_steps(tmp_path)
     for step in files:
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scene_runs import run, write_case, write_deck
+from scene_runs import restart_steps, run, write_case, write_deck
 from test_lean import CASES, small
 
 from engines.lammps_decks import needs_lammps
@@ -46,7 +46,7 @@ def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp
     p = write_deck(short(path), tmp_path)
     launcher.run("in.scene", tmp_path)
     whole = last_frame(p, tmp_path)
-    steps = sorted(int(re.search(r"\d+", p.name).group()) for p in tmp_path.glob("restart.*.bin"))
+    steps = restart_steps(tmp_path)
     for step in (steps[2], steps[6]):
         for frame in tmp_path.glob("particles.*.bin"):
             frame.unlink()

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from scene_runs import restart_steps, run, write_case
 from test_parts_motions import BOX, PLATE
 
 from engines.lammps_decks import needs_lammps
@@ -59,7 +59,7 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
     ended = p.with_ends(ends)
     whole = tables.particles(ended, tmp_path), tables.rows(ended, out)
     assert (whole[1]["lid_force_z"] > 0.1).any()
-    steps = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))[:-1]
+    steps = restart_steps(tmp_path)[:-1]
     at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")}
     assert len(steps) > 30 and at_ends <= {*steps}
     for step in sorted({*steps[3::9]} | at_ends):

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A run that is interrupted while spheres are still poured in, or after the last one."""
 
-import re
 from pathlib import Path
 
 import pytest
 from parts_cases import BED, parts
-from scene_runs import write_deck
+from scene_runs import restart_steps, write_deck
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
@@ -46,14 +45,10 @@ def continued(poured, begin: int, tmp_path):
     return tables.particles(p, tmp_path, without=range(begin + 1))
 
 
-def restarts(folder: Path) -> list[int]:
-    return sorted(int(re.search(r"\d+", p.name).group()) for p in folder.glob("restart.*.bin"))
-
-
 def test_a_run_interrupted_while_it_pours_ends_with_all_its_spheres(poured, tmp_path):
     _, folder, whole = poured
     counts = whole.groupby("step")["id"].count()
-    begin = next(s for s in restarts(folder) if counts[s] == counts[counts < COUNT].max())
+    begin = next(s for s in restart_steps(folder) if counts[s] == counts[counts < COUNT].max())
     again = continued(poured, begin, tmp_path)
     assert 0 < counts[begin] < COUNT
     last = again[again["step"] == whole["step"].max()]
@@ -77,7 +72,7 @@ def test_a_run_interrupted_while_it_pours_ends_with_all_its_spheres(poured, tmp_
 def test_a_run_interrupted_after_the_last_sphere_was_poured_ends_bitwise_the_same(poured, tmp_path):
     _, folder, whole = poured
     counts = whole.groupby("step")["id"].count()
-    begin = next(s for s in restarts(folder) if counts[s] == COUNT)
+    begin = next(s for s in restart_steps(folder) if counts[s] == COUNT)
     again = continued(poured, begin, tmp_path)
     assert again.equals(whole[whole["step"] > begin].reset_index(drop=True))
 
@@ -95,7 +90,7 @@ def test_a_stream_that_has_ended_does_not_begin_again_where_spheres_are_still_to
     launcher.run("in.scene", tmp_path)
     whole = tables.particles(p, tmp_path)
     counts = whole.groupby("step")["id"].count()
-    begin = next(s for s in restarts(tmp_path) if counts.get(s) == 10)
+    begin = next(s for s in restart_steps(tmp_path) if counts.get(s) == 10)
     (tmp_path / "again").mkdir()
     again = continued((p, tmp_path, whole), begin, tmp_path / "again")
     assert begin < p.phases[0].end and counts.iloc[-1] == 50

@@ -333,9 +333,9 @@ Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discri
 class Until(Frozen):
     """Condition that ends a phase before its duration, tested in every row from `after` on (a tenth of the duration).
 
-    kinetic_energy: of a sphere, the mean is below. count: so few spheres are in the room. force: mean force of a row on
-    `wall` is reached; force_below: the force has fallen to it. travel: way of `wall`, which moves with a constant
-    velocity.
+    kinetic_energy: of a sphere, the mean is below; a room without spheres waits for them. count: so few spheres are in
+    the room. force: mean force of a row on `wall` is reached; force_below: the force has fallen to it. travel: way of
+    `wall`, which moves with a constant velocity.
     """
 
     kinetic_energy: Annotated[float, Quantity("J", above=0.0)] | None = None

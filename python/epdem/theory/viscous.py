@@ -164,12 +164,11 @@ def _unload(law: Curve, top: Array, L: Array, V: Array, m: Array, dashpot: float
     return _end(rate, np.array([np.ones_like(top), np.zeros_like(top), np.zeros_like(top)]), loaded)
 
 
-def _rebound(law: Curve, top: Array, L: Array, V: Array, m: Array, zeta: float) -> tuple[Array, Array, Array]:
+def _rebound(law: Curve, top: Array, L: Array, V: Array, m: Array, motion: _Oscillator) -> tuple[Array, Array, Array]:
     """Overlap above the dent, speed and time at the end of a rebound from rest, in units of L, V and L/V."""
     if np.any(law.flatness(top) != 0):
-        q, speed, time = _unload(law, top, L, V, m, 2 * np.sqrt(5 / 6) * zeta)
+        q, speed, time = _unload(law, top, L, V, m, 2 * np.sqrt(5 / 6) * motion.zeta)
         return q**4, speed, time
-    motion = _Oscillator(zeta)
     (rest, _), (u, rate) = motion.state(motion.turn), motion.state(motion.end)
     time = 0.8 * rest**0.2 * (motion.time(motion.end) - motion.time(motion.turn))
     one = np.ones_like(top)
@@ -191,9 +190,9 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Damp
     motion, own = _Oscillator(zeta), (15 * m * v * v / (16 * law.E_star * np.sqrt(law.R_star))) ** 0.4
     (most, _), (left, rate) = motion.state(motion.turn), motion.state(motion.end)
     top, parting, back = own * most**0.8, own * left**0.8, -v * rate
-    time, W_plastic = 0.8 * own / v * motion.time(motion.end), np.zeros_like(v)
-    unit = 1.25 * m * v * v / own
-    force_max = unit * motion.force(motion.summit)
+    unit_force, unit_time = 1.25 * m * v * v / own, 0.8 * own / v
+    time, force_max = unit_time * motion.time(motion.end), unit_force * motion.force(motion.summit)
+    W_plastic = np.zeros_like(v)
 
     yielded = top > law.yield_overlap
     if yielded.any():
@@ -204,11 +203,11 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Damp
         summit = np.asarray(law.overlap_of_work(law.work(y) + kinetic))
         given, recovery = law.recovered_work(summit), np.asarray(law.recovered_overlap(summit))
         V = np.sqrt(2 * given / m_y)
-        x, rate, after = _rebound(law, summit, recovery, V, m_y, zeta)
-        time[yielded] = 0.8 * own[yielded] / v_y * motion.time(phase) + recovery / V * after
+        x, rate, after = _rebound(law, summit, recovery, V, m_y, motion)
+        time[yielded] = unit_time[yielded] * motion.time(phase) + recovery / V * after
         time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit)
         top[yielded], back[yielded], parting[yielded] = summit, -V * rate, summit - recovery * (1 - x)
-        before = unit[yielded] * motion.force(np.minimum(phase, motion.summit))
+        before = unit_force[yielded] * motion.force(np.minimum(phase, motion.summit))
         force_max[yielded] = np.maximum(before, law.force(summit))
         W_plastic[yielded] = law.plastic_work(summit)
     work_out = 0.5 * m * back * back
