@@ -46,7 +46,7 @@ def standing(folder: Path, dt: float) -> tuple[np.ndarray, np.ndarray]:
         f"run {steps}",
     ]
     (folder / "in.standing").write_text("\n".join(deck) + "\n", encoding="utf-8")
-    launcher.run("in.standing", folder, log="log.standing", out="out.standing", seconds=36000)
+    launcher.run("in.standing", folder, out="out.standing", seconds=36000)
     first, *_, last = dump.series(folder / "standing.bin")
     return first, last
 

@@ -8,6 +8,7 @@ import numpy as np
 from epdem.engines import log
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
+from epdem.impacts.plan import Plan
 from epdem.scenes.plan import ScenePlan
 
 MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan
@@ -27,9 +28,10 @@ class Recorded(Liggghts):
         super().__init__()
         self.begin = begin  # [s] at step 0
 
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        texts = super().files(plan)
-        texts["setup.in"] = self.setup(plan, texts["setup.in"])
+    def files(self, job: Plan | ScenePlan) -> dict[str, str]:
+        texts = super().files(job)
+        if isinstance(job, ScenePlan):
+            texts["setup.in"] = self.setup(job, texts["setup.in"])
         return texts
 
     def setup(self, plan: ScenePlan, text: str) -> str:

@@ -106,7 +106,7 @@ def _run(folder, start, style, walls, *, die, dt, more):
             lines.append(f"fix w{axis}{sign + 1} all {walls.format(region=f'r{axis}{sign + 1}')}")
     lines += ["fix move all nve/sphere", *more, f"timestep {dt!r}", f"run {int(seconds / dt)}", ""]
     (folder / "in.press").write_text("\n".join(lines))
-    launcher.run("in.press", folder, log="log.press", seconds=1800)
+    launcher.run("in.press", folder, out="out.press", seconds=1800)
 
 
 def press(folder, start, settings, *, die, softens=True, elastic=(E / Y, NU), dt=0.02):
@@ -139,7 +139,7 @@ def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
     more += ["thermo 80", "thermo_modify format float %.10g lost warn"]
     style = ["pair_style granular", f"pair_coeff * * {law}"]
     _run(folder, start, style, f"wall/gran/region granular {law} region {{region}} contacts", die=die, dt=dt, more=more)
-    found = re.findall(r"^ +(\d+) +(-?[\d.]+(?:e[+-]\d+)?)$", (folder / "log.press").read_text(), re.M)
+    found = re.findall(r"^ +(\d+) +(-?[\d.]+(?:e[+-]\d+)?)$", (folder / "out.press").read_text(), re.M)
     step, total = np.array(found, float).T
     way = SPEED[die] * dt * step
     volume = len(start[1]) * 4 * np.pi / 3

@@ -41,7 +41,7 @@ def forms() -> dict[str, tuple[Path, str | None]]:
     """A case and its law for each form of a deck, which is its lines without their numbers."""
     found: dict[str, tuple[Path, str | None]] = {}
     for path, law in itertools.product(IMPACTS, (None, "hertz")):
-        lines = engine("liggghts").impact_files(small(path, law))["in.impact"].splitlines()
+        lines = engine("liggghts").files(small(path, law))["in.impact"].splitlines()
         form = "\n".join(re.sub(r"-?\d[\d.e+-]*", "0", line) for line in lines if not line.startswith("#"))
         found.setdefault(form, (path, law))
     return found

@@ -190,8 +190,8 @@ def test_a_run_that_fails_says_how_with_its_last_words(way, fake, tmp_path):
 
 def test_a_run_that_hangs_is_stopped_with_all_its_children(fake, tmp_path, monkeypatch):
     fake("echo 'step 7'; sleep 60 & echo $! > child; wait")
-    call = module.call
-    monkeypatch.setattr(module, "call", lambda *a, **k: call(*a, **k | {"seconds": 3.0}))
+    call = launcher.call
+    monkeypatch.setattr(launcher, "call", lambda *a, **k: call(*a, **k | {"seconds": 3.0}))
     with pytest.raises(EngineError, match=r"did not end within 3 s.*step 7"):
         run(prepared(steps=20, speeds=["1 m/s"])[0], tmp_path / "deck")
     child = int((tmp_path / "deck/child").read_text())

@@ -172,4 +172,4 @@ def impacts(plan: Plan, folder: Path, **options: object) -> Trajectory:
     (folder / "job.json").write_text(json.dumps(job))
     done = yade(IMPACTS, folder)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
-    return trajectory(plan, folder / "path.bin", {})
+    return trajectory(plan, folder, {})

@@ -69,10 +69,10 @@ def test_dumps_of_impacts(tmp_path, monkeypatch):
     with says(r"incomplete \(1 rows of 2\); the run was stopped while it wrote this frame"):
         dump.local(path)
     monkeypatch.setattr(dump, "series", lambda path: np.zeros((3, 2, 3)))
-    with says(r"the run left an incomplete dump \(3 frames of 2 bodies, expected .*see log.liggghts beside it"):
-        scene_tables.trajectory(p, path, {})
+    with says(r"the run left an incomplete dump \(3 frames of 2 bodies, expected .*see out.liggghts beside it"):
+        scene_tables.trajectory(p, tmp_path, {})
     monkeypatch.setattr(lammps_launcher, "run", lambda *words, **named: 1.0)
-    with says("path.txt: the run left an incomplete dump .*; see log.lammps beside it"):
+    with says("path.txt: the run left an incomplete dump .*; see out.lammps beside it"):
         Lammps().run(p, tmp_path)
 
 

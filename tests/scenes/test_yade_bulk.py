@@ -16,8 +16,7 @@ from epdem.engines import log
 from epdem.engines.liggghts import launcher
 from epdem.engines.yade import deck as scene_deck
 from epdem.engines.yade import tables as yade_tables
-from epdem.engines.yade.engine import Yade
-from epdem.engines.yade.launcher import environment
+from epdem.engines.yade.launcher import OUT, environment
 from epdem.errors import CaseError, EngineError
 from epdem.scenes import placement
 from epdem.scenes.columns import named_rows
@@ -165,9 +164,9 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
         check=True,
     )
     assert "YADE leaves a folder: False" in done.stderr
-    (tmp_path / "deck" / Yade.out).write_text(done.stdout)
+    (tmp_path / "deck" / OUT).write_text(done.stdout)
     outcome = run(path, engine="yade", out=tmp_path / "out")
-    rows = named_rows(outcome.plan, yade_tables.rows(outcome.plan, tmp_path / "deck" / Yade.out))
+    rows = named_rows(outcome.plan, yade_tables.rows(outcome.plan, tmp_path / "deck" / OUT))
     assert rows.equals(outcome.results.rows)
 
 

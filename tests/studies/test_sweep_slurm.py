@@ -139,7 +139,7 @@ def test_ranks_of_a_point_lie_on_two_nodes(case, here, tmp_path, monkeypatch):
     assert "NodeList=first,second" in here.ask("scontrol", "show", "job", "-o", job).replace(
         "[first-second]", "first,second"
     )
-    (log,) = out.glob("points/*/thornton/liggghts/log.liggghts")
+    (log,) = out.glob("points/*/thornton/liggghts/out.liggghts")
     assert " on 2 procs for " in log.read_text()
     alone = run.run(run.plan(case, {"impact.body.radius": "1 mm"}), tmp_path / "alone", jobs=1).table
     assert found["e_n"].to_numpy() == pytest.approx(alone["e_n"].to_numpy(), rel=1e-8)

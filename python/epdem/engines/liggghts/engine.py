@@ -2,20 +2,22 @@
 """LIGGGHTS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
+import re
 from pathlib import Path
+from typing import Any
 
 from ...base import paths
 from ...base.declarations import declarations
 from ...base.processes import most_ranks
-from ...errors import CaseError
-from ...impacts.engine import Trajectory, check_features
+from ...errors import CaseError, EngineError
+from ...impacts.engine import check_features
 from ...impacts.plan import Plan
-from ...jobs.engine import Feature, Report
+from ...jobs.engine import Feature
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
 from ..host import Host, impact_head
-from ..input_script import atom_types, finite, impact_files
+from ..input_script import atom_types, finite
 from . import deck, launcher, resume, tables
 from .deck import ImpactDeck
 from .macros import ContactWords
@@ -40,24 +42,7 @@ class Liggghts(Host):
     ranks = most_ranks()
     mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
-    out = launcher.OUT
-    scene_deck, scene_tables = deck, tables
-    leftovers: tuple[str, ...] = (
-        "particles.*.bin",
-        "contacts.*.txt",
-        "wall_contacts.*.txt",
-        "restart.*.bin",
-        "stress_*.vtk",
-        "picture.*.ppm",
-        "in.resume",
-    )
-
-    def missing(self) -> str | None:
-        return launcher.missing()
-
-    def version(self) -> str:
-        path = paths.launcher()
-        return (launcher.version(path) if path else "") or "LIGGGHTS (version unknown)"
+    launcher, scene_deck, tables, resumed = launcher, deck, tables, resume
 
     def parts(self) -> list[Path]:
         found = (paths.native("libepdem_liggghts.so"), paths.launcher())
@@ -77,9 +62,6 @@ class Liggghts(Host):
     def check_scene(self, plan: ScenePlan) -> list[str]:
         super().check_scene(plan)
         return [NO_BALANCE] if plan.case.numerics.balance else []
-
-    def impact_files(self, plan: Plan) -> dict[str, str]:
-        return impact_files(self.template, self.deck(plan), plan)
 
     def deck(self, plan: Plan) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
@@ -112,18 +94,15 @@ class Liggghts(Host):
             path=deck.PATH,
         )
 
-    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
-        path = folder / deck.PATH
-        path.unlink(missing_ok=True)
-        (folder / tables.END).unlink(missing_ok=True)
-        allowed = 120 + 2e-6 * plan.n * plan.steps
-        wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        result = tables.trajectory(plan, path, {"total": wall, "stepping": log.loop_seconds(folder / launcher.LOG)})
-        path.unlink()  # large
-        return result
-
-    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        resume.run(plan, folder, ranks=ranks, report=report)
-
-    def continue_scene(self, plan: ScenePlan, folder: Path, step: int, ranks: int, report: Report) -> None:
-        resume.run_on(plan, folder, step, ranks=ranks, report=report)
+    def start(self, script: str, folder: Path, **how: Any) -> float:
+        try:
+            return super().start(script, folder, **how)
+        except EngineError as error:
+            lost = re.search(r"Mesh \(id (?:wall_)?(\w+)\): Mesh elements have been lost", str(error))
+            if lost is None:
+                raise
+            out = folder / launcher.OUT
+            raise EngineError(
+                f"scene.wall.{lost[1]}: the wall has left scene.room after step {log.rows(out)['Step'].iloc[-1]}; "
+                f"enlarge the room, or stop the wall before by the duration or the 'until' of its phase ({out})"
+            ) from None

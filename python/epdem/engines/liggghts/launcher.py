@@ -16,7 +16,6 @@ from ...jobs.engine import refuse_ranks
 
 MPIRUN = "mpirun"
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
-LOG = "log.liggghts"  # LIGGGHTS's own log
 OUT = "out.liggghts"  # both of its streams
 
 
@@ -30,13 +29,13 @@ def missing() -> str | None:
     return None
 
 
-def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
+def command(deck: str, *, ranks: int = 1) -> list[str]:
     """The command that runs a deck in its folder. Raises EngineError if our LIGGGHTS is not there; see refuse_ranks."""
     launcher = paths.launcher()
     if launcher is None:
         raise EngineError(f"LIGGGHTS with our models was not found; {INSTALL}")
     refuse_ranks("liggghts", most_ranks(), ranks, MPIRUN)
-    liggghts = [str(launcher), "-in", deck, "-log", log]
+    liggghts = [str(launcher), "-in", deck, "-log", "none"]
     if ranks == 1:
         return liggghts
     if "SLURM_JOB_ID" in os.environ and shutil.which("srun"):  # the cluster's own way, which keeps account of it
@@ -57,9 +56,9 @@ def environment(ranks: int = 1) -> dict[str, str]:
     return ours | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
-def run(deck: str, folder: Path, *, ranks: int = 1, log: str = "none", out: str = OUT, **how: Any) -> float:
-    """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
-    return call(command(deck, ranks=ranks, log=log), folder, log=out, env=environment(ranks), **how)
+def run(deck: str, folder: Path, *, ranks: int = 1, out: str = OUT, **how: Any) -> float:
+    """Run a deck in its folder to its end; seconds taken. `how` as in processes.call."""
+    return call(command(deck, ranks=ranks), folder, log=out, env=environment(ranks), **how)
 
 
 @dataclass(frozen=True)
@@ -79,9 +78,10 @@ class Executable:
         return ", ".join([self.version or "version unknown", *built])
 
 
-def version(path: Path) -> str:
-    """Name and version of a LIGGGHTS, as "LIGGGHTS-PUBLIC 3.8.0"; "" if it says nothing. Raises EngineError."""
-    return _version(_help(path))
+def version(path: Path | None = None) -> str:
+    """Name and version of a LIGGGHTS, as "LIGGGHTS-PUBLIC 3.8.0"; None: of ours. Raises EngineError."""
+    path = path or paths.launcher()
+    return (_version(_help(path)) if path else "") or "LIGGGHTS (version unknown)"
 
 
 def examine(path: Path, laws: tuple[str, ...]) -> Executable:

@@ -1,50 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bulk scenes in LIGGGHTS: a run, and one that continues from a restart file."""
+"""A scene in LIGGGHTS that continues from a restart file."""
 
-import contextlib
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 from ...base import rendering as decks
-from ...errors import EngineError
-from ...jobs.engine import Report
 from ...scenes.plan import ScenePlan
 from .. import log
-from ..restarts import later, phase_at, pruning
+from ..restarts import later, phase_at
 from . import launcher
 from .deck import SceneDeck, deck
 from .scene_parts import InsertFix
-
-
-def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
-    """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
-    with _lost_walls_named(folder):
-        launcher.run("in.scene", folder, ranks=ranks, report=pruning(folder, report))
-
-
-@contextlib.contextmanager
-def _lost_walls_named(folder: Path) -> Iterator[None]:
-    """An error of LIGGGHTS about a mesh that has left the domain names the wall and the step."""
-    try:
-        yield
-    except EngineError as error:
-        lost = re.search(r"Mesh \(id (?:wall_)?(\w+)\): Mesh elements have been lost", str(error))
-        if lost is None:
-            raise
-        step = int(log.rows(folder / launcher.OUT)["Step"].iloc[-1])
-        raise EngineError(
-            f"scene.wall.{lost[1]}: the wall has left scene.room after step {step}; enlarge the room, or stop the wall "
-            f"before by the duration or the 'until' of its phase ({folder / launcher.OUT})"
-        ) from None
-
-
-def run_on(plan: ScenePlan, folder: Path, step: int, *, ranks: int, report: Report) -> None:
-    """Continue a run from the restart file of a step. Raises CaseError, EngineError."""
-    script = write_resume(plan, folder, step)
-    with _lost_walls_named(folder):
-        launcher.run(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
 
 
 def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[InsertFix]:

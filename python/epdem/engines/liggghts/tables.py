@@ -10,14 +10,16 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EngineError
+from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
-from ...impacts.plan import Plan, approach
+from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from . import dump
-from .launcher import LOG
+from .deck import PATH
+from .launcher import OUT
 from .primitives import overlaps, tubes, walls
 
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
@@ -28,19 +30,18 @@ COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 END = "end.bin"  # dump of impacts at their end
 
 
-def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
+def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force and approach velocity from z, vz, fz of every body. Raises EngineError if samples are missing."""
-    n = plan.n
+    path = folder / PATH
     try:
-        z, vz, fz = np.moveaxis(dump.series(path), 2, 0)
-        bodies = n if math.isinf(plan.experiment.target.radius) else 2 * n
-        if z.shape != (plan.steps + 1, bodies):
-            raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
-        vx, spin = dump.series(path.with_name(END))[-1].T if plan.experiment.oblique else (None, None)
+        place, velocity, force = np.moveaxis(dump.series(path), 2, 0)[:, None]
+        found, bodies = place.shape[1:], plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
+        if found != (plan.steps + 1, bodies):
+            raise ValueError(f"{found[0]} frames of {found[1]} bodies, expected {plan.steps + 1} of {bodies}")
+        vx, spin = dump.series(folder / END)[-1].T if plan.experiment.oblique else (None, None)
     except (ValueError, IndexError) as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {LOG} beside it") from None
-    overlap, velocity = approach(plan, z, vz)
-    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, vx, spin)
+        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {OUT} beside it") from None
+    return impacts.trajectory(plan, place, velocity, force, seconds, vx, spin)
 
 
 def _frame(path: Path, count: int) -> np.ndarray:

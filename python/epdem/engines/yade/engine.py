@@ -5,19 +5,17 @@ A deck has a copy of the module epdem_yade. Without the module a deck of normal 
 """
 
 import re
-import shutil
-import time
 from math import isfinite, isinf
 from pathlib import Path
+from typing import Any
 
-from ...base import rendering as decks
 from ...base.declarations import declarations, library_path
-from ...base.processes import call, captured_output
+from ...base.processes import captured_output
 from ...errors import CaseError
-from ...impacts.engine import Trajectory, check_features
+from ...impacts.engine import check_features
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
-from ...jobs.engine import Feature, Report
+from ...jobs.engine import Feature
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host, impact_head
@@ -26,8 +24,6 @@ from .classes import BodyTable, ContactClasses, DeckMaterial, Functors, PairValu
 from .deck import ImpactDeck, axes, body_tables
 from .launcher import command, environment, module_version, write_deck_modules
 from .scene_parts import table_text
-
-INSTALL = "apt-get install yade"
 
 
 class Yade(Host):
@@ -49,18 +45,12 @@ class Yade(Host):
     )
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
-    out = "out.yade"
-    scene_deck, scene_tables = deck, tables
-    leftovers = ("particles.*.npy", "contacts.*.npy", "triangles.*.npy")
+    scripts = ("impact.py", deck.SCRIPT)
+    launcher, scene_deck, tables = launcher, deck, tables
 
     def __init__(self) -> None:
         self.classes = launcher.module() is not None
         self.features = type(self).features | (self.of_classes if self.classes else set())
-
-    def missing(self) -> str | None:
-        if shutil.which(command()) is None:
-            return f"YADE was not found ({command()}); {INSTALL}"
-        return None
 
     def version(self) -> str:
         match = re.search(r"version: (\S+)", captured_output([command(), "--version"], environment()))
@@ -161,30 +151,13 @@ class Yade(Host):
         super().check_scene(plan)
         return deck.notes(plan)
 
-    def impact_files(self, plan: Plan) -> dict[str, str]:
-        deck = self.deck(plan)
+    def data(self, deck: Any) -> dict[str, str]:
         head = "# x y z v_z v_x omega_y, SI" if deck.oblique else "# x y z v_z, SI"
-        data = {
-            b.data: table_text(head, table.tolist()) for b, table in zip(deck.bodies, body_tables(plan), strict=True)
-        }
-        return {"impact.py": decks.render(self.template, deck=deck)} | data
+        tables = [table_text(head, table.tolist()) for table in body_tables(deck.plan)]
+        return dict(zip((b.data for b in deck.bodies), tables, strict=True))
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
         self.require_module(job)
         scene = isinstance(job, ScenePlan)
         files = super().write(job, folder)
         return files if self.own_law else files + write_deck_modules(folder, classes=self.classes, scene=scene)
-
-    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
-        path, log = folder / "path.bin", folder / self.out
-        path.unlink(missing_ok=True)
-        start = time.perf_counter()
-        allowed = 120 + 2e-5 * plan.n * plan.steps
-        call([command(), "-n", "-x", "impact.py"], folder, log=log.name, seconds=allowed, env=environment())
-        wall = time.perf_counter() - start
-        result = tables.trajectory(plan, path, {"total": wall, "stepping": tables.stepping_seconds(log)})
-        path.unlink()  # large
-        return result
-
-    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        call([command(), "-n", "-x", deck.SCRIPT], folder, log=self.out, env=environment(), report=report)

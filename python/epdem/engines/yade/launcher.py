@@ -7,12 +7,16 @@ import shutil
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from ...base import paths
 from ...base.declarations import library_path
 from ...base.files import atomic, write_texts
+from ...base.processes import call
 from ...errors import EngineError
 
+OUT = "out.yade"  # both streams
+INSTALL = "apt-get install yade"
 MODULE, PROGRAM = "epdem_yade.so", "epdem_yade.program"  # the module, and the path of the program that it is built for
 BUILD = "run 'make yade', or name one by EPDEM_YADE_MODULE"  # the module
 MODULES = Path(__file__).parents[2] / "yade/deck_modules"
@@ -21,6 +25,16 @@ MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 def command() -> str:
     """YADE's program; EPDEM_YADE names another one."""
     return os.environ.get("EPDEM_YADE", "yade")
+
+
+def missing() -> str | None:
+    """None if YADE can run here, else a sentence with the command that installs it."""
+    return None if shutil.which(command()) else f"YADE was not found ({command()}); {INSTALL}"
+
+
+def run(script: str, folder: Path, *, ranks: int = 1, out: str = OUT, **how: Any) -> float:
+    """Run a script in its folder to its end; seconds taken. A run has one rank; `how` as in processes.call."""
+    return call([command(), "-n", "-x", script], folder, log=out, env=environment(), **how)
 
 
 def module() -> Path | None:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The trajectory of impacts and the tables of a scene from YADE's files. Only this module reads their formats."""
 
-import re
 from collections.abc import Collection
 from math import isinf
 from pathlib import Path
@@ -10,12 +9,14 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EngineError
-from ...impacts.engine import Trajectory, oblique_pairs
-from ...impacts.plan import Plan, approach
+from ...impacts import engine as impacts
+from ...impacts.engine import Trajectory
+from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from ..host import frames
 from .deck import axes
+from .launcher import OUT
 from .scene_parts import is_endless, wall_names
 
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m], whether the
@@ -23,10 +24,10 @@ from .scene_parts import is_endless, wall_names
 CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.FORCE, *columns.NORMAL, *columns.GROWTH]
 
 
-def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
+def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
-    n, many = plan.n, len(axes(plan))
-    expected = (plan.steps + 2, 3, many, n if isinf(plan.experiment.target.radius) else 2 * n)
+    path, bodies = folder / "path.bin", plan.n if isinf(plan.experiment.target.radius) else 2 * plan.n
+    expected = (plan.steps + 2, 3, len(axes(plan)), bodies)
     tangential = spin = None
     try:
         with path.open("rb") as file:
@@ -36,19 +37,10 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
         if samples.shape != expected or not np.isfinite(samples).all():
             raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
     except (OSError, ValueError) as error:
-        raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
+        raise EngineError(f"{path}: the run left no complete result ({error}); see {OUT} beside it") from None
     place, before, force = np.moveaxis(samples, 0, 2)
     place, force, velocity = place[:, :-1], force[:, :-1], 0.5 * (before[:, :-1] + before[:, 1:])
-    if many > 1 and spin is not None:
-        return oblique_pairs(plan, place, velocity, force, spin[:n], seconds)
-    overlap, speed = approach(plan, place[0], velocity[0])
-    return Trajectory(plan.time_step, overlap, force[0, :, :n].T, speed, seconds, tangential, spin)
-
-
-def stepping_seconds(log: Path) -> float:
-    """The deck's own time for its steps [s]; NaN if the log does not contain it."""
-    times = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
-    return float(times[-1]) if times else float("nan")
+    return impacts.trajectory(plan, place, velocity, force, seconds, tangential, spin)
 
 
 def _frames(

@@ -22,6 +22,6 @@ def velocities(tool: Lammps, pairs: Pairs, variant: str, folder: Path) -> np.nda
     texts = {f"in.{k}": text for k, text in enumerate(scripts(deck, pairs, variant, "lammps"))}
     write_texts(folder, texts | {deck.data: data(pairs, deck.types, variant == "swap")})
     for k in range(len(texts)):
-        launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
+        launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), out=f"out.{k}", seconds=120)
     v = impact_frames(folder / deck.path, 1, 2 * pairs.plan.n).reshape(2, pairs.plan.n, 3)
     return np.flip(v, axis=0) if variant == "swap" else v

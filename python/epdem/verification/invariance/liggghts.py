@@ -66,6 +66,6 @@ def velocities(tool: Liggghts, pairs: Pairs, variant: str, folder: Path) -> np.n
     write_texts(folder, texts | {deck.data: data(pairs, deck.types, variant == "swap")})
     for k in range(len(texts)):
         (folder / deck.path).unlink(missing_ok=True)
-        launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
+        launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), out=f"out.{k}", seconds=120)
     v = dump.series(folder / deck.path)[-1].reshape(2, pairs.plan.n, 3)
     return np.flip(v, axis=0) if variant == "swap" else v

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.processes import call
+from ...engines.yade import launcher
 from ...engines.yade.deck import ImpactDeck
 from ...engines.yade.engine import Yade
-from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
 from ...impacts.plan import Group
 from .pairs import Pairs
@@ -48,14 +47,14 @@ def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     deck = tool.deck(pairs.plan)
     folder.mkdir(parents=True, exist_ok=True)
     if not deck.contact.native:
-        write_deck_modules(folder, classes=tool.classes)
+        launcher.write_deck_modules(folder, classes=tool.classes)
     for name, side in _sides(pairs, variant).items():
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
         (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
     (folder / deck.path).unlink(missing_ok=True)
     for k, text in enumerate(scripts(deck, pairs, variant)):
         (folder / f"pairs{k}.py").write_text(text, encoding="utf-8")
-        call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
+        launcher.run(f"pairs{k}.py", folder, out=f"out{k}.yade", seconds=120)
     try:
         v = np.asarray(np.load(folder / deck.path)).reshape(2, pairs.plan.n, 3)
     except OSError as error:

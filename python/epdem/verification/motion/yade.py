@@ -9,11 +9,10 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...base.processes import call
+from ...engines.yade import launcher
 from ...engines.yade.classes import DeckMaterial, settings
 from ...engines.yade.deck import ImpactDeck
 from ...engines.yade.engine import Yade
-from ...engines.yade.launcher import BUILD, command, environment, write_deck_modules
 from ...errors import EngineError
 from .prescribed import Loads, Motion, Touch, summary
 
@@ -32,14 +31,14 @@ class YadeMotions:
     def missing(self) -> str | None:
         if reason := Yade().missing():
             return reason
-        return None if Yade().classes else f"motions need the module epdem_yade, which is not built; {BUILD}"
+        return None if Yade().classes else f"motions need the module epdem_yade, which is not built; {launcher.BUILD}"
 
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
         write_texts(folder, files(touch, motion))
-        write_deck_modules(folder, classes=True)
+        launcher.write_deck_modules(folder, classes=True)
         path = folder / "path.npy"
         path.unlink(missing_ok=True)
-        call([command(), "-n", "-x", SCRIPT], folder, log="out.yade", seconds=300, env=environment())
+        launcher.run(SCRIPT, folder, seconds=300)
         try:
             table = np.load(path).reshape(motion.steps, 13)
         except (OSError, ValueError) as error:
