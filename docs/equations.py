@@ -19,7 +19,8 @@ from epdem.theory.sources import CHAPTER, SOURCES
 ROOT = Path(__file__).resolve().parents[1]
 STATEMENT = re.compile(r"^Eq\. (8\.\d\d) \[(.+?)\]: (.+?)(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
 HEADERS, TESTS = "cpp_contact/include/epdem", "tests"
-THEORY = ("python/epdem/theory", "python/epdem/verification/theory")
+PRINTED, CRITERIA = ROOT / "python/epdem/verification/printed.py", ROOT / TESTS / "physics/criteria.py"
+THEORY = [*(ROOT / "python/epdem/theory").glob("*.py"), PRINTED, CRITERIA]
 # header, function and code of what computes with an equation; a law that merely leads to one (8.83, 8.84) does not
 CPP = {
     "8.78": [("cavity.hpp", "Cavity::parameters", '"c_Y", "1", 1.60')],
@@ -73,7 +74,7 @@ def _tests_of(name: str, tests: dict[str, str]) -> tuple[str, ...]:
     if "." in module:
         stated = re.compile(rf"# equation: {re.escape(name)}$", re.MULTILINE)
         return tuple(place for place, text in tests.items() if stated.search(text))
-    imported = re.compile(rf"from epdem\.(?:verification\.)?theory\.{module} import .*\b{word}\b")
+    imported = re.compile(rf"from epdem\.(?:verification|theory)\.{module} import .*\b{word}\b")
     called = re.compile(rf"\b{re.escape(name)}\b")
     bare = re.compile(rf"(?<![\w.\"]){word}\(")
     return tuple(
@@ -99,7 +100,7 @@ def _test_functions() -> dict[str, str]:
 def entries() -> list[Entry]:
     """All equations that docstrings of the theory state, by number. KeyError for a source that is not in SOURCES."""
     tests, rows = _test_functions(), []
-    for path in sorted(path for folder in THEORY for path in (ROOT / folder).glob("*.py")):
+    for path in THEORY:
         for name, doc in _functions(path):
             for number, source, formula in STATEMENT.findall(doc):
                 formula = " ".join(formula.split())
@@ -115,8 +116,9 @@ def page() -> str:
         "",
         f"The numbers of the equations are those of {CHAPTER}.",
         "",
-        "The functions are in `epdem.theory` and, for verification alone, in `epdem.verification.theory`,",
-        f"the headers in `{HEADERS}`, the tests in `{TESTS}/physics`. This command writes the page:",
+        "The functions are in `epdem.theory`, those of figures alone in `epdem.verification.printed`, those of tests alone",
+        f"in `{CRITERIA.relative_to(ROOT)}`, the headers in `{HEADERS}`, the tests in",
+        f"`{TESTS}/physics`. This command writes the page:",
         "`.venv/bin/python docs/equations.py`.",
         "",
         "| eq. | formula | source | function | C++ | tests |",

@@ -27,7 +27,7 @@ from epdem.report.chart import GREY, INK, Axis, Chart, Panel, Series, save
 from epdem.theory.backbones import LAWS as BACKBONES
 from epdem.theory.restitution import wu
 from epdem.theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
-from epdem.verification.theory import printed
+from epdem.verification import printed
 
 ROOT = Path(__file__).parents[1]
 YIELD_STRESS = 50e6  # [Pa]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from epdem.theory import restitution, yielding
 from epdem.theory.backbones import Hertz, Meyer, Thornton
-from epdem.verification.theory import printed
+from epdem.verification import printed
 
 PAIR, P_Y, M = {"E_star": 1.1428571428571429e11, "R_star": 0.01}, 2.8e9, 0.032882003107573169
 V_Y = yielding.yield_speed(p_y=P_Y, m_star=M, **PAIR)

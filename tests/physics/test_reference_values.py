@@ -4,6 +4,7 @@
 Where a comment does not say otherwise the tolerance is 1e-13: the round-off of a few products and roots.
 """
 
+import criteria
 import mpmath as mp
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import pytest
 import oblique
 from epdem.theory import pair, restitution, timestep, viscous, yielding
 from epdem.theory.backbones import Cavity, Hertz, Johnson, Thornton
-from epdem.verification.theory import criteria, pressure
+from epdem.verification import printed
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}  # E = 208 GPa, nu = 0.3, sphere of 10 mm on a plane
 M = 0.032882003107573169
@@ -21,42 +22,11 @@ def exactly(value):
     return pytest.approx(float(value), rel=1e-13, abs=0)
 
 
-def test_hertz_pressure_is_a_half_ellipse():
-    """r/a = 0.6: sqrt(1 - 0.36) = 0.8 of the peak."""
-    assert pressure.hertz([0.0, 1.2, 2.0, 3.0], p_0=5.0, a=2.0) == pytest.approx([5, 4, 0, 0], rel=1e-13)
-
-
-def test_hertz_peak_pressure_is_three_halves_of_force_over_area():
-    """Force 4/3 E* a^3/R* on pi a^2: with E* = 200 GPa, a = 0.1 mm, R* = 10 mm the peak is 4/pi GPa."""
-    force, area = 4 / 3 * 2e11 * 1e-12 / 0.01, mp.pi * mp.mpf("1e-8")
-    assert float(1.5 * force / area) == pytest.approx(4e9 / np.pi, rel=1e-13)
-    assert pressure.hertz_peak(E_star=2e11, R_star=0.01, a=1e-4) == exactly(1.5 * force / area)
-
-
-def test_hertz_force_is_the_integral_of_its_pressure():
-    """2 pi r 3 sqrt(1 - r^2/4) from 0 to 2 is 8 pi."""
-    integral = mp.quad(lambda r: 2 * mp.pi * r * 3 * mp.sqrt(1 - r * r / 4), [0, 2])
-    assert float(integral) == exactly(8 * mp.pi)
-    assert pressure.hertz_force(p_0=3.0, a=2.0) == exactly(8 * mp.pi)
-
-
-def test_truncated_pressure_is_hertz_cut_off_at_the_yield_pressure():
-    assert pressure.truncated([0.0, 1.2], p_0=5.0, a=2.0, p_y=4.5) == pytest.approx([4.5, 4.0], rel=1e-13)
-
-
-def test_truncated_force_is_plateau_and_rim():
-    """p_0 = 2, p_y = a = 1: plateau up to r^2 = 3/4, 3 pi/4; rim (4 pi/3)(1/4)^1.5 = pi/6; uncut 4 pi/3."""
-    assert pressure.truncated_force(p_0=2.0, a=1.0, p_y=1.0) == exactly(11 * mp.pi / 12)
-    assert pressure.truncated_force(p_0=2.0, a=1.0, p_y=5.0) == exactly(4 * mp.pi / 3)
-
-
 def test_mean_pressure_of_the_three_regimes():
-    """Elastic 4 x/(3 pi): 0.4 at 0.3 pi; cavity (2/3)(1 + ln(x/3)): 4/3 at 3 e; fully plastic: 2.8 or what is asked."""
-    assert pressure.elastic_mean(3 * np.pi) == exactly(4)
-    assert pressure.cavity_mean(3 * np.e) == exactly(mp.mpf(4) / 3)
-    assert pressure.mean([0.3 * np.pi, 3 * np.e, 1e4]) == pytest.approx([0.4, 4 / 3, 2.8], rel=1e-13)
-    assert list(pressure.regime([0.3 * np.pi, 3 * np.e, 1e4])) == [0, 1, 2]
-    assert pressure.mean(1e4, plastic=3.0) == exactly(3)
+    """Elastic 4 x/(3 pi): 0.4 at 0.3 pi; cavity (2/3)(1 + ln(x/3)): 4/3 at 3 e; fully plastic: 2.8."""
+    assert printed.elastic_mean(3 * np.pi) == exactly(4)
+    assert printed.cavity_mean(3 * np.e) == exactly(mp.mpf(4) / 3)
+    assert printed.mean([0.3 * np.pi, 3 * np.e, 1e4]) == pytest.approx([0.4, 4 / 3, 2.8], rel=1e-13)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
@@ -72,22 +42,12 @@ def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
     x, w = np.polynomial.legendre.leggauss(60)
     theta = np.pi / 4 * (x + 1)
     r = a * np.sin(theta)  # the root at the rim becomes smooth
-    ring = 2 * np.pi * r * a * np.cos(theta) * pressure.unloading(r, a=a, a_max=a_max, p=p)
+    ring = 2 * np.pi * r * a * np.cos(theta) * printed.unloading(r, a=a, a_max=a_max, p=p)
     assert float(force) == pytest.approx(np.pi / 4 * float(w @ ring), rel=1e-12, abs=0)  # round-off of 60 nodes
     h = 1e-5 * law.recovered_overlap(top)
     slope = (law.unloading_force(alpha + h, top) - law.unloading_force(alpha - h, top)) / (2 * h)
     # central difference: (h/delta_e)^2 = 1e-10 times a third derivative of order 10, and round-off 1e-16/1e-5
     assert slope == pytest.approx(2 * STEEL["E_star"] * float(a), rel=1e-8, abs=0)
-
-
-@pytest.mark.parametrize("share", [1e-6, 1e-4, 1e-2, 0.5, 0.99])
-def test_unloading_force_keeps_its_digits_down_to_a_tiny_circle(share):
-    """8.82 summed over the circle in 40 digits, r = a sqrt(1 - u^2); it goes as (4/3) p a^3/a* when a is small."""
-    with mp.workdps(40):
-        k = mp.mpf(share)
-        inner = lambda u: mp.asin(mp.sqrt(k * k * u * u / (1 - k * k * (1 - u * u))))  # noqa: E731
-        exact = 4 * k * k * mp.quad(lambda u: u * inner(u), [0, 1])
-    assert float(pressure.unloading_force(a=2 * share, a_max=2.0, p=3.0)) == exactly(12 * exact)
 
 
 def test_mean_pressure_at_first_yield_is_two_thirds_of_the_peak():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from epdem.theory import pair, restitution, yielding
 from epdem.theory.backbones import LAWS, Cavity, Hertz, Meyer, Thornton
 from epdem.theory.johnson import Johnson
-from epdem.verification.theory import printed
+from epdem.verification import printed
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169

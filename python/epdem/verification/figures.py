@@ -22,8 +22,7 @@ from ..theory.backbones import LAWS
 from ..theory.cavity import Cavity
 from ..theory.restitution import e_n, wu
 from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
-from .theory import pressure, printed
-from .theory.criteria import FULLY_PLASTIC
+from . import printed
 
 STEEL = {"E": 208e9, "nu": 0.3, "density": 7850.0, "Y": 1e9, "R": 0.01}  # the reference case
 
@@ -38,14 +37,14 @@ def mean_pressure() -> Chart:
     alpha = np.geomspace(0.03, 3e4, 600) * law.yield_overlap
     a = law.radius(alpha)
     series = [
-        Series("three regimes", x, pressure.mean(x), INK, width=2.0),
-        Series("Hertz, $4x/(3\\pi)$", x[x < 4], pressure.elastic_mean(x[x < 4]), 0, "dash"),
-        Series("expanding cavity, 8.81", x[x > 1.5], pressure.cavity_mean(x[x > 1.5]), 1, "dot", width=1.5),
+        Series("three regimes", x, printed.mean(x), INK, width=2.0),
+        Series("Hertz, $4x/(3\\pi)$", x[x < 4], printed.elastic_mean(x[x < 4]), 0, "dash"),
+        Series("expanding cavity, 8.81", x[x > 1.5], printed.cavity_mean(x[x > 1.5]), 1, "dot", width=1.5),
         Series("law cavity", 1e3 * a, law.force(alpha) / (np.pi * a * a * law.Y), 2, "dashdot", width=1.5),
     ]
-    for k, p in enumerate(FULLY_PLASTIC):
+    for k, p in enumerate(printed.FULLY_PLASTIC):
         series.append(Series("" if k else "fully plastic, 8.80", [0.5, 300], [p, p], GREY))
-    for end in (law.radius(law.plastic_overlap) * 1e3, 40.0, pressure.cavity_end(FULLY_PLASTIC[0])):
+    for end in (law.radius(law.plastic_overlap) * 1e3, 40.0, printed.cavity_end(printed.FULLY_PLASTIC[0])):
         series.append(Series("", [float(end)] * 2, [0.0, 3.6], GREY, "dot", width=0.8))
     axes = Axis("$E^* a/(Y R^*)$", log=True, low=0.5, high=300), Axis("$p_m/Y$", low=0.0, high=3.6)
     title = "Mean contact pressure, eqs. 8.79 to 8.81"
@@ -57,7 +56,7 @@ def unloading_pressure() -> Chart:
     a_max, series = 2.68e-6, []
     for k, share in enumerate((1.0, 0.95, 0.8, 0.6, 0.4, 0.2)):
         r = np.linspace(-1, 1, 801) * share * a_max
-        p = pressure.unloading(r, a=share * a_max, a_max=a_max, p=FULLY_PLASTIC[0])
+        p = printed.unloading(r, a=share * a_max, a_max=a_max, p=printed.FULLY_PLASTIC[0])
         series.append(Series(f"$a$ = {share:g} $a^*$", r * 1e6, p, k))
     axes = Axis("$r$", "µm"), Axis("$p/Y$")
     title = "Unloading from p = 2.8 Y, a* = 2.68 µm: eq. 8.82"

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Yield criteria, and mean pressures at first yield and at full plasticity."""
+"""Equations of the chapter that tests alone use: yield criteria, mean pressures at first yield and at full plasticity,
+and two printed restitutions."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...theory.numerics import Array, Real, bisect, number, poisson_ratio
+from epdem.theory.numerics import Array, Real, bisect, number, poisson_ratio
+from epdem.verification.printed import FULLY_PLASTIC
 
 FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
-FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; see fully_plastic_mean
 
 
 def axis_difference(z: Real, nu: Real) -> Array:
@@ -70,3 +71,26 @@ def fully_plastic_mean(Y: Real) -> tuple[Real, Real]:
     Y = number("Y", Y)
     low, high = FULLY_PLASTIC
     return low * Y, high * Y
+
+
+def johnson_plane(speed: Real, *, p_m: Real, E_star: Real, density: Real) -> Array:
+    """Sphere on a plane, fully plastic. NaN where it exceeds 1.
+
+    Eq. 8.87 [Johnson 1985]: e_n = 1.718 (p_m^5/(E*^4 rho))^(1/8) v^(-1/4)
+
+    The radius drops out. density [kg/m^3]; 1.718 is the printed rounding of the general equation's constant.
+    """
+    p_m, E_star = number("p_m", p_m), number("E_star", E_star)
+    e_n = 1.718 * (p_m**5 / (E_star**4 * number("density", density))) ** 0.125 * number("speed", speed) ** -0.25
+    return np.where(e_n <= 1, e_n, np.nan)
+
+
+def bridges(speed: Real) -> Array:
+    """Ice spheres; speed in m/s here. NaN outside the measured range.
+
+    Eq. 8.89 [Bridges et al. 1984]: e_n = 0.32 v^(-0.234), v in cm/s, 0.015 < v < 5.1
+
+    (The text prints the exponent rounded to 0.23.)
+    """
+    v = 100 * number("speed", speed)
+    return np.where((v > 0.015) & (v < 5.1), 0.32 * v**-0.234, np.nan)
