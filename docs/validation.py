@@ -17,7 +17,7 @@ import tomlkit
 from epdem.engines import engine
 from epdem.impacts import store
 from epdem.impacts.run import run
-from epdem.verification import crosscheck
+from epdem.verification.engine_comparison import crosscheck
 
 ROOT = Path(__file__).parents[1]
 CLAIMS, PAGE = ROOT / "docs/claims.toml", ROOT / "docs/validation.md"

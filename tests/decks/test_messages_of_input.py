@@ -20,7 +20,7 @@ from epdem.scenes import placement
 from epdem.scenes.engine import files
 from epdem.scenes.measures import refuse_measures
 from epdem.scenes.plan import plan
-from epdem.verification.models.predictions import mdr, predict_mdr
+from epdem.verification.models.theories import Mdr
 
 sys.path.append(str(Path(__file__).parents[1] / "scenes"))
 from parts_cases import BED, CASE, FLOOR
@@ -295,10 +295,10 @@ def test_laws_and_models_of_other_programs():
             experiment(impact.parse(hard))
     viscous = experiment(impact.parse(read_toml(CASES / "viscous_steel.toml")))
     with pytest.raises(CaseError, match="mdr is compared on walls and without a dashpot: its flats are rigid"):
-        mdr(viscous)
+        Mdr.of(viscous)
     without = {"law": {"name": "hertz"}, "materials.steel.yield_stress": None}
     elastic = experiment(impact.parse(changed(read_toml(CASES / "steel_wall.toml"), without)))
     with pytest.raises(CaseError, match="mdr needs the yield stress of both materials"):
-        predict_mdr(elastic)
+        Mdr.of(elastic)
     with pytest.raises(CaseError, match=r"these impacts are normal; give impact.angles"):
         elastic.friction_of_oblique()

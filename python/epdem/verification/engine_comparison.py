@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from ..base.files import claim, results_folder
 from ..base.tables import write_csv
-from ..case.impact import Check, load
+from ..case.impact import load
 from ..case.toml import error_context
 from ..engines import ENGINES, ImpactEngine
 from ..engines.yade.engine import Yade
@@ -21,9 +20,10 @@ from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run
-from .invariance.check import VARIANTS, Invariance, examine
-from .models import OWN_LAW, SAME_LAW, OwnTheory
-from .models.predictions import prediction as predict
+from .invariance.check import examine
+from .invariance.pairs import VARIANTS
+from .models import OWN_LAW, SAME_LAW
+from .models.theories import prediction as predict
 from .runner import Progress, compare_impacts, silent
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
@@ -78,39 +78,29 @@ def models(x: Experiment, chosen: Sequence[str] = ()) -> tuple[dict[str, ImpactE
     return here, absent
 
 
-def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
-    """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
-    prediction = tool.predict(x)
-    return compare_impacts(plan(x, prediction), prediction, tool, folder, tool.name)
+def _compared(tool: ImpactEngine, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
+    """An engine against the theory of what it runs: (one row per speed, seconds)."""
+    prediction = predict(tool, x)
+    return compare_impacts(plan(x, prediction), prediction, tool, folder)
 
 
 def _row(
     tool: ImpactEngine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, folder: Path
 ) -> dict[str, object]:
-    middle = fine.iloc[len(fine) // 2]
+    middle, worst = fine.iloc[len(fine) // 2], fine.max(numeric_only=True)
     row: dict[str, object] = {"model": tool.name, "speed": middle["speed"]}
     row |= {name: middle[name] for q in SHOWN for name in (q, q + "_theory")}
-    row |= {f"{q}_error": float(fine[f"{q}_error"].max()) for q in SHOWN}
-    row["order"] = math.log(coarse["e_n_error"].max() / fine["e_n_error"].max()) / math.log(COARSER)
-    row |= {k: float(fine[k].max()) for k in OBLIQUE if k in fine}
-    invariance = examine(tool, x, folder / "invariance" / tool.name)
-    row["unequal_error"] = invariance.unequal_error if invariance else math.nan
-    row |= {variant: invariance.e_n[variant] if invariance else math.nan for variant in VARIANTS}
-    row["momentum"] = float(np.nanmax(list(invariance.momentum.values()))) if invariance else math.nan
-    within = _within(tool, fine, x.check) and _invariant(invariance, x.check.e_n)
+    row |= {f"{q}_error": worst[f"{q}_error"] for q in SHOWN}
+    row["order"] = math.log(coarse["e_n_error"].max() / worst["e_n_error"]) / math.log(COARSER)
+    row |= {k: worst[k] for k in OBLIQUE if k in fine}
+    changes = examine(tool, x, folder / "invariance" / tool.name)
+    # psi_2 counts where the friction is the case's, not the host's own
+    checked = [*CHECKED, *(["psi_2"] if "psi_2_error" in fine and not isinstance(tool, Yade) else [])]
+    within = all(bool((fine[f"{name}_error"] <= getattr(x.check, name)).all()) for name in checked)
+    # e_n of unequal spheres is that of theory, and changes in no variant by more than the tolerance of e_n
+    within &= not any(changes.get(name, math.nan) > x.check.e_n for name in ("unequal_error", *VARIANTS))
     names = (PASS, FAIL) if tool.name in ENGINES else (OTHERS_WITHIN, OTHERS_OUTSIDE)
-    return row | {"check": names[0] if within else names[1]}
-
-
-def _within(tool: ImpactEngine, rows: pd.DataFrame, check: Check) -> bool:
-    """Whether all errors are within tolerance; psi_2 counts where the friction is the case's, not the host's own."""
-    names = [*CHECKED, *(["psi_2"] if "psi_2_error" in rows and not isinstance(tool, Yade) else [])]
-    return all(bool((rows[f"{name}_error"] <= getattr(check, name)).all()) for name in names)
-
-
-def _invariant(found: Invariance | None, tolerance: float) -> bool:
-    """Whether e_n of unequal spheres is that of theory, and changes in no variant by more than the tolerance of e_n."""
-    return found is None or not any(off > tolerance for off in (found.unequal_error, *found.e_n.values()))
+    return row | changes | {"check": names[0] if within else names[1]}
 
 
 def crosscheck(
@@ -131,42 +121,32 @@ def crosscheck(
     with error_context(path):
         x = experiment(case, law)
     tools, absent = models(x, engines)
-    own = {name: kind() for name, kind in OWN_LAW.items() if name in tools}
+    own = {name: kind.own.of(x).note for name, kind in OWN_LAW.items() if name in tools}
     folder = results_folder(out, "crosscheck", case.name)
-    steps = case.numerics.steps_in_contact
-    few = max(10, steps // COARSER)
+    steps, laws = case.numerics.steps_in_contact, [law] if law else []
+    fewer = _with_steps(x, max(10, steps // COARSER))
     with claim(folder, force=force):
-        fine, coarse = (
-            run(
-                path,
-                engines=[tool for name, tool in tools.items() if name not in own],
-                laws=[law] if law else [],
-                out=place,
-                steps=n,
-                fresh=fresh,
-                progress=progress,
-            )
-            for place, n in ((folder, steps), (folder / "coarse", few))
-        )
-        prediction, middle = fine.predictions[x.law.name], x.speed.size // 2
-        rows = [
-            {"model": "theory", "speed": x.speed[middle]}
-            | {q: getattr(prediction, q)[middle] for q in SHOWN}
-            | {"check": ""}
-        ]
+        ours = [tool for name, tool in tools.items() if name not in own]
+        fine = run(path, engines=ours, laws=laws, out=folder, steps=steps, fresh=fresh, progress=progress)
+        rows, found = [_theory(fine, x)], fine.results.comparison
         for name, tool in tools.items():
             progress(f"{name}: invariance")
             if name in own:
-                many, seconds = _own_theory(own[name], _with_steps(x, steps), folder / name)
-                less, _ = _own_theory(own[name], _with_steps(x, few), folder / "coarse" / name)
+                many, seconds = _compared(tool, _with_steps(x, steps), folder / name)
             else:
-                many, less = (t[t["engine"] == name] for t in (fine.results.comparison, coarse.results.comparison))
-                seconds = fine.seconds[name]
-            rows.append(_row(tool, many, less, x, folder) | {"seconds": seconds})
+                many, seconds = found[found["engine"] == name], fine.seconds[name]
+            few, _ = _compared(tool, fewer, folder / "coarse" / name)
+            rows.append(_row(tool, many, few, x, folder) | {"seconds": seconds})
         table = pd.DataFrame(rows)
         write_csv(folder / "crosscheck.csv", table)
         report.figure(fine)
-    return Crosscheck(table, fine, absent, {name: tool.note(x) for name, tool in own.items()})
+    return Crosscheck(table, fine, absent, own)
+
+
+def _theory(fine: Outcome, x: Experiment) -> dict[str, object]:
+    prediction, middle = fine.predictions[x.law.name], x.speed.size // 2
+    numbers = {q: getattr(prediction, q)[middle] for q in SHOWN}
+    return {"model": "theory", "speed": x.speed[middle], **numbers, "check": ""}
 
 
 def _with_steps(x: Experiment, steps: int) -> Experiment:

@@ -5,9 +5,9 @@ Swapping names, sorting bodies, changing owners or stopping and restarting in mi
 restitution nor momentum.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -18,72 +18,51 @@ from ...engines.yade.engine import Yade
 from ...errors import EngineError
 from ...impacts.experiment import Experiment
 from ...impacts.plan import plan
-from ..models.predictions import prediction as predict
-from . import lammps, liggghts, yade
-from .pairs import AXIS, Pairs, pairs, unequal_spheres
+from ..models.theories import prediction as predict
+from . import input_scripts, yade
+from .pairs import AXIS, VARIANTS, pairs, unequal_spheres
 
-VARIANTS = ("swap", "sort", "migration", "restart")
 FAILED = float("inf")  # it died or lost particles: as wrong as can be
 
 
-@dataclass(frozen=True)
-class Invariance:
-    """Largest change over the phases: of e_n (absolute), and of total momentum (relative to one body's change).
+def _host(tool: ImpactEngine) -> tuple[tuple[str, ...], Callable[..., np.ndarray]] | None:
+    """The variants of an engine, and the function that runs one: velocities [m/s], (2, n, 3); None: it has none."""
+    if isinstance(tool, Yade) and (tool.classes or tool.own_law):  # a deck with the C library does not continue
+        return yade.VARIANTS, yade.velocities
+    if isinstance(tool, Liggghts | Lammps) and tool.name != "lammps-mdr":  # which has walls only
+        return VARIANTS, input_scripts.velocities
+    return None
 
-    NaN: the engine has no such variant; inf: it failed.
+
+def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> dict[str, float]:
+    """Run the impacts of unequal spheres in every variant. Raises EngineError. Empty: the engine has none.
+
+    unequal_error: of e_n against theory, relative; by the name of a variant the largest absolute change of e_n over
+    the phases, NaN if the engine does not have it, inf if it failed; momentum: the largest change in any variant,
+    relative to one body's change.
     """
-
-    e_n: dict[str, float]
-    momentum: dict[str, float]
-    unequal_error: float  # of e_n against theory, relative, for these unequal spheres
-
-
-class _Host(Protocol):
-    """How an engine runs the variants of a set-up: a module of this package."""
-
-    VARIANTS: tuple[str, ...]
-
-    def velocities(self, tool: Any, pairs: Pairs, variant: str, folder: Path, /) -> np.ndarray:
-        """Velocities [m/s] after the impacts, "plain" or in a variant: (2, n, 3), body first.
-
-        Raises EngineError; ValueError if bodies are lost.
-        """
-
-
-def _host(tool: ImpactEngine) -> _Host | None:
-    if tool.name == "lammps-mdr":  # walls only
-        return None
-    if isinstance(tool, Yade) and not (tool.classes or tool.own_law):  # a deck with the C library does not continue
-        return None
-    hosts: dict[type, _Host] = {Liggghts: liggghts, Lammps: lammps, Yade: yade}
-    return next((host for kind, host in hosts.items() if isinstance(tool, kind)), None)
-
-
-def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> Invariance | None:
-    """Run the impacts of unequal spheres in every variant; None: the engine has none. Raises EngineError."""
     if (host := _host(tool)) is None:
-        return None
+        return {}
+    variants, velocities = host
     pair = unequal_spheres(x)
     prediction = predict(tool, pair)
     p = plan(pair, prediction)
     scene = pairs(p, float(prediction.duration[0]))
     mass = np.array([pair.body.mass, pair.target.mass])[:, None, None]
-
-    def restitution(v: np.ndarray) -> np.ndarray:
-        return np.asarray((v[0] - v[1]) @ AXIS / p.speed)
-
-    plain = host.velocities(tool, scene, "plain", folder / "plain")
     change = np.abs(pair.m_star * p.speed).max()
-    e_n, momentum = {}, {}
-    for variant in VARIANTS:
-        e_n[variant] = momentum[variant] = float("nan")
-        if variant not in host.VARIANTS:
-            continue
+
+    def run(variant: str) -> tuple[Any, Any]:
+        """e_n, and the lost momentum."""
+        v = velocities(tool, scene, variant, folder / variant)
+        lost = np.abs((mass * (v - scene.drift)).sum(axis=0)).max() / change
+        return (v[0] - v[1]) @ AXIS / p.speed, lost
+
+    plain, momentum = run("plain")[0], 0.0
+    row = {"unequal_error": float(np.abs(plain / prediction.e_n[0] - 1).max())} | dict.fromkeys(VARIANTS, np.nan)
+    for variant in variants:
         try:
-            v = host.velocities(tool, scene, variant, folder / variant)
-            e_n[variant] = float(np.abs(restitution(v) - restitution(plain)).max())
-            momentum[variant] = float(np.abs((mass * (v - scene.drift)).sum(axis=0)).max() / change)
+            e_n, lost = run(variant)
+            row[variant], momentum = float(np.abs(e_n - plain).max()), max(momentum, float(lost))
         except (EngineError, ValueError):
-            e_n[variant] = momentum[variant] = FAILED
-    error = np.abs(restitution(plain) / prediction.e_n[0] - 1).max()
-    return Invariance(e_n, momentum, float(error))
+            row[variant] = momentum = FAILED
+    return row | {"momentum": momentum}

@@ -6,6 +6,7 @@ there an engine puts a border of ranks, and one of bins.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Group, Plan
 from ...theory.pair import sphere_mass
 
+VARIANTS: tuple[str, ...] = ("swap", "sort", "migration", "restart")
 # From target to body. Bins are sorted by z first, then y: with this tilt the lower body in z is the upper one in y, and
 # the order of the two changes twice as they drift across the border of bins at z = 0.
 # With the tilt in x they change their rank one after the other.
@@ -35,6 +37,13 @@ class Pairs:
     def ordered(self, swap: bool) -> tuple[Group, ...]:
         """The sides in the order in which an engine adds them: `swap` puts the targets first."""
         return self.sides[:: -1 if swap else 1]
+
+    def runs(self, variant: str, file: str) -> list[dict[str, Any]]:
+        """The runs of a variant, one after the other: their steps, and what they `load` before and `save` after."""
+        whole: dict[str, Any] = {"variant": variant, "steps": self.plan.steps, "load": None, "save": None}
+        if variant != "restart":
+            return [whole]
+        return [whole | {"steps": self.stop, "save": file}, whole | {"steps": whole["steps"] - self.stop, "load": file}]
 
 
 def unequal_spheres(x: Experiment) -> Experiment:

@@ -2,61 +2,44 @@
 """Pairs of spheres for YADE in variants of the set-up with the same physics."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ...base import rendering as decks
-from ...engines.yade import launcher
+from ...base.files import write_texts
 from ...engines.yade.deck import ImpactDeck
 from ...engines.yade.engine import Yade
+from ...engines.yade.launcher import run, write_deck_modules
+from ...engines.yade.scene_parts import table_text
 from ...errors import EngineError
-from ...impacts.plan import Group
 from .pairs import Pairs
 
 # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
 VARIANTS: tuple[str, ...] = ("swap", "restart")
 
 
-def _sides(pairs: Pairs, variant: str) -> dict[str, Group]:
-    return {f"side{k}.data": side for k, side in enumerate(pairs.ordered(variant == "swap"))}
-
-
 def scripts(deck: ImpactDeck, pairs: Pairs, variant: str) -> list[str]:
     """The scripts of a variant in the order in which they run."""
-    steps = pairs.plan.steps
-    context: dict[str, Any] = {
-        "deck": deck,
-        "variant": variant,
-        "sides": [(name, side.body.radius, side.body.material) for name, side in _sides(pairs, variant).items()],
-        "steps": steps,
-        "load": None,
-        "save": None,
-    }
-    parts = [context]
-    if variant == "restart":
-        parts = [
-            context | {"steps": pairs.stop, "save": "middle.yade.gz"},
-            context | {"steps": steps - pairs.stop, "load": "middle.yade.gz"},
-        ]
-    return [decks.render("verification/yade/pairs.py.j2", **part) for part in parts]
+    sides = [(f"side{k}.data", s.body.radius, s.body.material) for k, s in enumerate(pairs.ordered(variant == "swap"))]
+    runs = pairs.runs(variant, "middle.yade.gz")
+    return [decks.render("verification/yade/pairs.py.j2", deck=deck, sides=sides, **run) for run in runs]
 
 
 def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     deck = tool.deck(pairs.plan)
-    folder.mkdir(parents=True, exist_ok=True)
+    texts = {f"pairs{k}.py": text for k, text in enumerate(scripts(deck, pairs, variant))}
+    tables = [np.hstack([side.place, side.velocity]).tolist() for side in pairs.ordered(variant == "swap")]
+    data = {f"side{k}.data": table_text("# x y z v_x v_y v_z, SI", table) for k, table in enumerate(tables)}
+    write_texts(folder, texts | data)
     if not deck.contact.native:
-        launcher.write_deck_modules(folder, classes=tool.classes)
-    for name, side in _sides(pairs, variant).items():
-        lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
-        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
-    (folder / deck.path).unlink(missing_ok=True)
-    for k, text in enumerate(scripts(deck, pairs, variant)):
-        (folder / f"pairs{k}.py").write_text(text, encoding="utf-8")
-        launcher.run(f"pairs{k}.py", folder, out=f"out{k}.yade", seconds=120)
+        write_deck_modules(folder, classes=tool.classes)
+    path = folder / deck.path
+    path.unlink(missing_ok=True)
+    for k, name in enumerate(texts):
+        run(name, folder, out=f"out{k}.yade", seconds=120)
     try:
-        v = np.asarray(np.load(folder / deck.path)).reshape(2, pairs.plan.n, 3)
+        v = np.asarray(np.load(path)).reshape(2, pairs.plan.n, 3)
     except OSError as error:
-        raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
-    return np.flip(v, axis=0) if variant == "swap" else np.asarray(v)
+        raise EngineError(f"{path}: the run left no result ({error}); see out{k}.yade beside") from None
+    return np.flip(v, axis=0) if variant == "swap" else v

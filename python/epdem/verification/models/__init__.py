@@ -5,27 +5,22 @@ from typing import Protocol
 
 from ...engines import ENGINES, ImpactEngine
 from ...errors import CaseError
-from ...impacts.experiment import Experiment
-from ...impacts.prediction import Prediction
 from .lammps import LammpsMdr
 from .liggghts import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
+from .theories import OtherLaw
 from .yade import YadeLuding
 
 
-class OwnTheory(ImpactEngine, Protocol):
-    """A model with a law of another code, and the theory of that law."""
+class OwnLaw(ImpactEngine, Protocol):
+    """A model with a law of another code."""
 
-    def predict(self, x: Experiment) -> Prediction:
-        """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
-
-    def note(self, x: Experiment) -> str:
-        """The origin of its numbers, in words."""
+    own: type[OtherLaw]
 
 
 # Models that have one of epdem's laws: the theory of the case is theirs, too.
 SAME_LAW: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (ThorntonNing, BuiltinHertz)}
 # Models with a law and a theory of their own: for `crosscheck`.
-OWN_LAW: dict[str, type[OwnTheory]] = {
+OWN_LAW: dict[str, type[OwnLaw]] = {
     tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
 }
 REFERENCE = BuiltinHertz.name  # run times are given as ratios to the time of this model

@@ -12,19 +12,19 @@ from ...engines.lammps.engine import Lammps
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent
-from . import predictions
+from .theories import Mdr, OtherLaw
 
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above
 
 
 class LammpsMdr(Lammps):
-    """Sphere on a rigid flat under mdr, which has no other wall, with the case's E*; its theory is in `predictions`."""
+    """Sphere on a rigid flat under mdr, which has no other wall, with the case's E*; its theory is in `theories`."""
 
     name = "lammps-mdr"
     template = "verification/lammps/impact.in.j2"
     ranks = 1
     features = frozenset({Feature.DECK, Feature.POSITIONS})
-    predict, note = staticmethod(predictions.predict_mdr), staticmethod(predictions.mdr_note)
+    own: type[OtherLaw] = Mdr
 
     def missing(self) -> str | None:
         return launcher.missing_program()
@@ -33,7 +33,7 @@ class LammpsMdr(Lammps):
         """The deck of a plan. Raises CaseError for cases outside mdr."""
         x = plan.experiment
         check_features(self, x)
-        law = predictions.mdr(x)
+        law = Mdr.of(x)
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
         return ImpactDeck(

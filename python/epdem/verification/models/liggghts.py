@@ -11,7 +11,7 @@ from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent
-from . import predictions
+from .theories import EXPONENT, STIFFENING, Edinburgh, Luding, OtherLaw
 
 
 def _elastic(plan: Plan) -> tuple[int, list[Property]]:
@@ -70,7 +70,7 @@ class ThorntonNing(_Rubbing):
 
 
 class _OwnTheory(Liggghts):
-    """A model whose numbers and theory are in `predictions`."""
+    """A model whose numbers and theory are in `theories`."""
 
     features = WITHOUT_OURS
 
@@ -87,13 +87,13 @@ class BuiltinLuding(_OwnTheory):
     """LIGGGHTS's `luding` without adhesion and damping."""
 
     name = "liggghts-luding"
-    predict, note = staticmethod(predictions.predict_luding), staticmethod(predictions.luding_note)
+    own: type[OtherLaw] = Luding
 
     def model(self, plan: Plan) -> str:
         return "luding"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        (types, elastic), law = _elastic(plan), predictions.luding(plan.experiment)
+        (types, elastic), law = _elastic(plan), Luding.of(plan.experiment)
         return (
             *elastic,
             per_pair("LoadingStiffness", types, law.k_1, "N/m", "k_1"),
@@ -108,7 +108,7 @@ class BuiltinEdinburgh(_OwnTheory):
     """LIGGGHTS's `edinburgh` without adhesion and damping."""
 
     name = "liggghts-edinburgh"
-    predict, note = staticmethod(predictions.predict_edinburgh), staticmethod(predictions.edinburgh_note)
+    own: type[OtherLaw] = Edinburgh
 
     def model(self, plan: Plan) -> str:
         return "edinburgh"
@@ -117,8 +117,8 @@ class BuiltinEdinburgh(_OwnTheory):
         types, elastic = _elastic(plan)
         return (
             *elastic,
-            per_pair("UnloadingStiffness", types, predictions.STIFFENING, "-", "k_2/k_1"),
-            scalar("overlapExponent", predictions.EXPONENT, "-", "n"),
+            per_pair("UnloadingStiffness", types, STIFFENING, "-", "k_2/k_1"),
+            scalar("overlapExponent", EXPONENT, "-", "n"),
             per_pair("coefficientAdhesionStiffness", types, 0.0, "-", "k_c/k_1"),
             scalar("adhesionExponent", 1.0, "-", "without adhesion of no effect"),
             per_pair("pullOffForce", types, 0.0, "N"),

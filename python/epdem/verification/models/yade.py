@@ -12,11 +12,11 @@ from ...engines.yade.engine import Yade
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Report, silent
-from . import predictions
+from .theories import Luding, OtherLaw
 
 
 class YadeLuding(Yade):
-    """YADE's `Law2_ScGeom_LudingPhys_Basic` without adhesion and damping; its numbers and theory are in `predictions`.
+    """YADE's `Law2_ScGeom_LudingPhys_Basic` without adhesion and damping; its numbers and theory are in `theories`.
 
     At walls YADE 2023.02a takes its plasticity depth as 0 and rebounds elastically. There a fixed sphere of the same
     radius stands for the wall, with the depth of the contact with the wall.
@@ -26,14 +26,14 @@ class YadeLuding(Yade):
     laws: tuple[str, ...] | None = None
     of_classes = frozenset()
     own_law = True
-    predict, note = staticmethod(predictions.predict_luding), staticmethod(predictions.luding_note)
+    own: type[OtherLaw] = Luding
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
         path = super().run(job, folder, ranks=ranks, report=report)
         return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
     def material(self, x: Experiment, body: Body, strength: float) -> DeckMaterial:
-        law, wall = predictions.luding(x), math.isinf(x.target.radius)
+        law, wall = Luding.of(x), math.isinf(x.target.radius)
         phi_f = 2 * law.phi_f if wall else law.phi_f  # YADE multiplies it by 2 R*, here half that of the wall
         values = {
             "density": x.body.density if wall else body.density,
