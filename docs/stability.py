@@ -14,11 +14,22 @@ from pages import markdown
 
 from epdem.theory.backbones import ADHESIVE, LAWS
 from epdem.verification import stability
+from epdem.verification.runner import STUDIES
 from epdem.verification.stability.cases import extremes
-from epdem.verification.stability.repeats import BOUNCE_SHARE, DRIFT, FORCE
+from epdem.verification.stability.repeats import BOUNCE_SHARE
 from epdem.verification.stability.roundoff import FORMULA
-from epdem.verification.stability.running import BROKEN, COARSE, CREATED, ERROR, FINE, FINEST, LEAST_ORDER, WRONG
-from epdem.verification.stability.suite import POSITION_COARSE, Outcome, summary
+from epdem.verification.stability.running import (
+    BROKEN,
+    COARSE,
+    CREATED,
+    ERROR,
+    FINE,
+    FINEST,
+    LEAST_ORDER,
+    POSITION_COARSE,
+    WRONG,
+)
+from epdem.verification.stability.suite import Outcome, summary
 from epdem.verification.tables import cell
 
 
@@ -195,8 +206,8 @@ def document(outcome: Outcome, command: str) -> str:
         order=LEAST_ORDER,
         tiny=FINEST,
         bounce=BOUNCE_SHARE,
-        drift=DRIFT,
-        force=FORCE,
+        drift=STUDIES["bounces"].tolerances["e_n_error"],
+        force=STUDIES["reloads"].tolerances["off"],
         wrong=WRONG,
         broken=BROKEN,
         tried=", ".join(f"{c:g}" for c in COARSE),

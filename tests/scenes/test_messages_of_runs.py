@@ -30,6 +30,7 @@ from epdem.jobs.stage import Inputs, Stage
 from epdem.scenes import columns, meshes, run
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
+from epdem.verification.stability.bench import Bench
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -151,7 +152,7 @@ def test_decks_and_studies(tmp_path):
     with says("2 lines start with 'run', expected 1"):
         variants.edit(deck, variants.Edit("run", ()))
     with says("deck cannot be made into another set-up"):
-        variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
+        variants.edits(Bench(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
         own_decks.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
 

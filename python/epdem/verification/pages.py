@@ -9,7 +9,7 @@ import pandas as pd
 from ..base.files import claim
 from ..impacts.comparison import UNITS
 from ..report.chart import GREY, Axis, Chart, Panel, Series, save
-from ..report.page import Facts, Page, Part, Rows, write
+from ..report.page import Facts, Page, Part, Rows
 from ..studies import pages as common
 from . import cost_report
 from .cost import Outcome as Cost
@@ -56,8 +56,8 @@ def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
     return common.write_study_page(_study_page(title, said, parts), folder)
 
 
-def of_stability(outcome: Stability, path: Path) -> Path:
-    """Write the page of the extreme cases to `path`."""
+def of_stability(outcome: Stability, folder: Path) -> Path:
+    """Write the page of the extreme cases."""
     verdicts = outcome.verdicts
     tables = {"By engine and law": summary(verdicts), "Every case": verdicts}
     tables |= {"Round-off": outcome.roundoff, "Bulk scenes": outcome.bulk}
@@ -65,7 +65,7 @@ def of_stability(outcome: Stability, path: Path) -> Path:
     count = verdicts["status"].value_counts()
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
     page = _study_page("Stiff and extreme cases", said, parts, passed=outcome.passed)
-    return write(path, lambda: page)
+    return common.write_study_page(page, folder)
 
 
 def validation_chart(v: Validation) -> Chart:

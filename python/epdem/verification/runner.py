@@ -36,12 +36,17 @@ class Study:
     tolerances: dict[str, float | str] = field(default_factory=dict)
 
     def judged(self, row: Row) -> Row:
-        """A row with `passed` and `reason`: the quantities above their tolerances; as it is if the study has none."""
+        """A row with `passed` and `reason`: the quantities above their tolerances; as it is if the study has none.
+
+        None as a value: the quantity was not asked of this row.
+        """
         if not self.tolerances:
             return row
         limits = {name: row[limit] if isinstance(limit, str) else limit for name, limit in self.tolerances.items()}
         wrong = [
-            f"{name} = {row[name]:.2g}, at most {limit:g}" for name, limit in limits.items() if not row[name] <= limit
+            f"{name} = {row[name]:.2g}, at most {limit:g}"
+            for name, limit in limits.items()
+            if row[name] is not None and not row[name] <= limit
         ]
         return row | {"passed": not wrong, "reason": "; ".join(wrong)}
 
@@ -70,15 +75,13 @@ STUDIES = {
 }
 
 
-def compare_impacts(
-    p: Plan, prediction: Prediction, tool: ImpactEngine, folder: Path, law: str = ""
-) -> tuple[pd.DataFrame, float]:
+def compare_impacts(p: Plan, prediction: Prediction, tool: ImpactEngine, folder: Path) -> tuple[pd.DataFrame, float]:
     """Impacts of a plan compared with their prediction, one row per speed, and run time [s].
 
-    law: name in the rows, else that of the plan. Raises EngineError, and CaseError for a plan that the engine refuses.
+    Raises EngineError, and CaseError for a plan that the engine refuses.
     """
     stage, x = run_plan(p, tool, folder), p.experiment
-    rows = compare(tool.name, law or x.law.name, stage.tables["impacts"], prediction, x.check)
+    rows = compare(tool.name, x.law.name, stage.tables["impacts"], prediction, x.check)
     return rows, stage.seconds["seconds"]
 
 

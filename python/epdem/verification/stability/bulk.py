@@ -2,7 +2,6 @@
 """Stiff bulk scenes of `bulk.toml`: their energy balance, and the same scene on several ranks."""
 
 import math
-import shutil
 import tempfile
 import tomllib
 from itertools import product
@@ -12,12 +11,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ...base.files import write_texts
-from ...case.scene import SceneCase, parse
-from ...case.units import to_si
+from ...api.files import Scene
+from ...base.tables import write_csv
+from ...case.scene import SceneCase
 from ...errors import CaseError
 from ...laws.strengths import default_numbers, find_law, yields_by_stress
-from ...scenes.checks import energy_balance
+from ...scenes.checks import energy_balance, kinetic
+from ...scenes.columns import last_frame
 from ...scenes.engine import SceneEngine
 from ...scenes.model import pair_law
 from ...scenes.plan import ScenePlan, plan
@@ -36,19 +36,20 @@ SHARES = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the stability limit at the highest s
 FINEST = 0.25  # share of the finest step, of the run that errors are against: an error of order 2 is known to 1/16
 
 
-def _spheres(about: dict[str, Any], lattice: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places [m] and velocities [m/s], (n, 3), and numbers of the materials, (n,)."""
-    spacing, rng = float(to_si(about["spacing"], "m")), np.random.default_rng(about["seed"])
+def _spheres(about: dict[str, Any], lattice: tuple[int, int, int]) -> pd.DataFrame:
+    """The spheres of a scene: places [m], radius [m], materials and velocities [m/s]."""
+    spacing, rng = about["spacing"], np.random.default_rng(about["seed"])
     axes = [spacing * (np.arange(k) + 0.5) for k in lattice]
     place = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     velocity = rng.normal(0.0, 1.0 / np.sqrt(3.0), place.shape)
     velocity -= velocity.mean(axis=0)
-    height = spacing * lattice[2]
-    if "meeting_speed" in about:
-        half = float(to_si(about["meeting_speed"], "m/s")) / 2
+    height, half = spacing * lattice[2], about.get("meeting_speed", 0.0) / 2
+    if half:
         velocity[:, 2] += np.where(place[:, 2] < height / 2, half, -half)
         place[:, 2] += height / 2  # room before and behind
-    return place, velocity, np.indices(lattice).sum(axis=0).reshape(-1) % len(about["materials"])
+    kind = np.indices(lattice).sum(axis=0).reshape(-1) % len(about["materials"])
+    table = pd.DataFrame(place, columns=[*"xyz"]).assign(radius=RADIUS, material=[f"m{k}" for k in kind])
+    return table.join(pd.DataFrame(velocity, columns=["vx", "vy", "vz"]))
 
 
 def _strength(law: str, p_y: float) -> float:
@@ -72,54 +73,33 @@ def scene_case(
     """
     about = SCENES[name]
     lattice = lattice or tuple(about["lattice"])
-    place, velocity, kind = _spheres(about, lattice)
-    rows = [
-        f"{','.join(map(repr, [*p.tolist(), RADIUS]))},m{k},{','.join(map(repr, v.tolist()))}"
-        for p, v, k in zip(place, velocity, kind, strict=True)
-    ]
-    write_texts(folder, {"spheres.csv": "\n".join(["x,y,z,radius,material,vx,vy,vz", *rows, ""])})
-    lx, ly, lz = (float(to_si(about["spacing"], "m")) * n for n in lattice)
-    high, time_ = lz * (2 if "meeting_speed" in about else 1), float(to_si(about["duration"], "s")) * duration
-    phase: dict[str, Any] = {"name": "run", "duration": f"{time_!r} s"}
-    walls: list[dict[str, Any]] = []
-    if about.get("closed") or "plate_speed" in about:
-        walls.append({"name": "floor", "kind": "plane", "axis": "z", "at": "0 m", "material": "m0"})
-    if about.get("closed"):
-        walls.append({"name": "lid", "kind": "plane", "axis": "z", "at": f"{high!r} m", "material": "m0"})
-    if "plate_speed" in about:
-        plate = {"name": "plate", "kind": "plate", "axis": "z", "material": "m0"}
-        walls.append(plate | {"center": [f"{x!r} m" for x in (lx / 2, ly / 2, lz)], "size": [f"{lx!r} m", f"{ly!r} m"]})
-        phase["move"] = [
-            {"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", f"-{about['plate_speed']}"]}
-        ]
+    write_csv(folder / "spheres.csv", _spheres(about, lattice))
+    lx, ly, lz = (about["spacing"] * n for n in lattice)
+    high = lz * about.get("heights", 1)
+    flat = {"kind": "plane", "axis": "z", "material": "m0"}
+    walls = [flat | {"name": wall, "at": {"floor": 0.0, "lid": high}[wall]} for wall in about.get("walls", [])]
+    phase: dict[str, Any] = {"name": "run", "duration": about["duration"] * duration}
+    if speed := about.get("plate_speed"):
+        walls.append(flat | {"name": "plate", "kind": "plate", "center": [lx / 2, ly / 2, lz], "size": [lx, ly]})
+        phase["move"] = [{"wall": "plate", "kind": "linear", "velocity": [0.0, 0.0, -speed]}]
         high += RADIUS
-    room = {axis: ["0 m", f"{length!r} m"] for axis, length in zip("xyz", (lx, ly, high), strict=True)}
-    scene = {"kind": "parts", "room": room, "periodic": True, "gravity": "0 m/s^2", "wall": walls, "phase": [phase]}
-    scene["fill"] = [{"name": "lattice", "file": str(folder / "spheres.csv")}]
+    scene = {"kind": "parts", "periodic": True, "gravity": 0.0, "wall": walls, "phase": [phase]}
+    scene |= {"room": {"x": [0.0, lx], "y": [0.0, ly], "z": [0.0, high]}}
+    scene |= {"fill": [{"name": "lattice", "file": str(folder / "spheres.csv")}]}
+    solid = {"poisson_ratio": POISSON, "density": DENSITY}
     materials = {
-        f"m{k}": {
-            "young_modulus": f"{E!r} Pa",
-            "poisson_ratio": POISSON,
-            "density": f"{DENSITY} kg/m^3",
-            "yield_stress": f"{_strength(law, p_y)!r} Pa",
-        }
+        f"m{k}": solid | {"young_modulus": E, "yield_stress": _strength(law, p_y)}
         for k, (E, p_y) in enumerate(about["materials"])
     }
-    return parse(
-        {
-            "case": {"name": name, "title": about["title"], "source": "generated by rule"},
-            "materials": materials,
-            "law": {"name": law},
-            "scene": scene,
-            "output": output or {"rows": 1, "particles": FRAMES, "contacts": FRAMES, "energy": True},
-            "numerics": {"highest_speed": about["highest_speed"]},
-        }
-    )
-
-
-def limit(case: SceneCase) -> float:
-    """The stability limit [s] of the contacts of a scene at its highest speed."""
-    return stable_step(case, 0.0)
+    case: SceneCase = Scene(
+        case={"name": name, "title": about["title"]},
+        materials=materials,
+        law={"name": law},
+        scene=scene,
+        output=output or {"rows": 1, "particles": FRAMES, "contacts": FRAMES, "energy": True},
+        numerics={"highest_speed": about["highest_speed"]},
+    ).model
+    return case
 
 
 def with_step(case: SceneCase, time_step: float) -> ScenePlan:
@@ -155,12 +135,8 @@ def balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     A row has the mean power of the steps up to its end, of which the last counts half; the force at the end is that of
     the contacts of the frame.
     """
-    table, contacts = energy_balance(p, tables), tables["contacts"]
-    by_step = contacts.assign(theory=_elastic(p, contacts)).groupby("step")["theory"].sum()
-    elastic = by_step.reindex(table["step"], fill_value=0.0).to_numpy()
-    change = elastic - table["elastic"].to_numpy()
-    table["balance"] += change - change[0]
-    table["elastic"] = elastic
+    contacts = tables["contacts"].assign(elastic_energy=lambda table: _elastic(p, table))
+    table = energy_balance(p, tables | {"contacts": contacts})
     for wall in p.scene.meshes:
         force = contacts[contacts["wall"] == wall].groupby("step")["force"].sum().reindex(table["step"], fill_value=0.0)
         table["balance"] -= 0.5 * p.time_step * p.phases[-1].velocity(wall)[2] * force.to_numpy()
@@ -175,14 +151,14 @@ def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int 
     last_difference: between 1 and 2 ranks, largest over the spheres, over the radius, a quarter through the scene and
     at the end; growth: the largest from frame to frame.
     """
-    p = with_step(case, SHARE * limit(case))
+    p = with_step(case, SHARE * stable_step(case, 0.0))
     one = run_plan(p, tool, folder)
     table = balance(p, one)
     frames = one["particles"], run_plan(p, tool, folder / "ranks", ranks=ranks)["particles"]
     brought = table["kinetic"].iloc[0] + table["work"].iloc[-1]
     apart = differences(*frames)
-    ends = [frame[frame["step"] == frames[0]["step"].max()] for frame in frames]
-    kinetic = [(0.5 * end["mass"] * (end[["vx", "vy", "vz"]] ** 2).sum(axis=1)).sum() for end in ends]
+    ends = [last_frame(frame) for frame in frames]
+    energies = [kinetic(end).sum() for end in ends]
     count = len(case.parts.table)
     return STUDIES["bulk"].judged(
         {
@@ -197,7 +173,7 @@ def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int 
             "first_difference": float(apart[len(apart) // 4]),
             "last_difference": float(apart[-1]),
             "growth": float((apart[1:] / np.maximum(apart[:-1], 1e-16)).max()),
-            "energy_difference": float(abs(kinetic[1] / kinetic[0] - 1)),
+            "energy_difference": float(abs(energies[1] / energies[0] - 1)),
         }
     )
 
@@ -205,21 +181,18 @@ def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int 
 def run(laws: list[str], tool: SceneEngine, *, progress: Progress = silent) -> pd.DataFrame:
     """Every scene with every law, one row each. Raises EngineError."""
     rows = []
-    with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
-        for name, law in product(SCENES, laws):
-            progress(f"{name}, {law}")
+    for name, law in product(SCENES, laws):
+        progress(f"{name}, {law}")
+        with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
             rows.append(judge_scene(scene_case(name, law, Path(scratch)), tool, Path(scratch)))
-            shutil.rmtree(scratch)
-            Path(scratch).mkdir()
     return pd.DataFrame(rows)
 
 
 def _dissipated(law: str, time_step: float, tool: SceneEngine, folder: Path) -> np.ndarray:
     """Plastic work of every sphere of two blocks that have met [J], shape (spheres,)."""
     case = scene_case("shock", law, folder, lattice=LATTICE, rows=1, particles=1, energy=True)
-    frames = run_plan(with_step(case, time_step), tool, folder)["particles"]
-    last = frames[frames["step"] == frames["step"].max()].sort_values("id")
-    return np.asarray(last["plastic_work"])
+    last = last_frame(run_plan(with_step(case, time_step), tool, folder)["particles"])
+    return np.asarray(last.sort_values("id")["plastic_work"])
 
 
 def convergence(
@@ -238,7 +211,7 @@ def convergence(
         raise CaseError(f"--bulk: {' and '.join(laws)} dissipates nothing; name a law that yields, or leave it out")
     with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
         folder = Path(scratch)
-        least = min(limit(scene_case("shock", law, folder, lattice=LATTICE)) for law in yielding)
+        least = min(stable_step(scene_case("shock", law, folder, lattice=LATTICE), 0.0) for law in yielding)
         for law in yielding:
             progress(f"bulk error: {law}, reference")
             reference, deviations = _dissipated(law, FINEST * min(shares) * least, tool, folder), []

@@ -8,10 +8,11 @@ import pandas as pd
 
 from ...errors import EpdemError
 from ...impacts.plan import starting_phases
+from ...laws.library import ImpactNumbers
 from .. import native
+from .bench import Bench
 from .cases import build
 from .running import Setting, position_floor, setting
-from .sampling import Sampler
 
 FORMULA = "0.5 sqrt(N) eps R/delta_e"
 
@@ -30,54 +31,35 @@ def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
     return v / float(x.speed[0])
 
 
-def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
-    """e_n of the embedded engine in long double, shape of gap."""
-    x = s.x
-    out = native.impacts_long_double(
-        x.native_law(), R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap, steps=steps
-    )
-    return np.asarray(out["rebound_speed"] / x.speed[0])
-
-
 def floors(
-    law: str, samplers: list[Sampler], *, times: Sequence[float] = (1e-4, 1e-2, 3.0, 1e2), share: float = 0.01
+    law: str, benches: Sequence[Bench], *, times: Sequence[float] = (1e-4, 1e-2, 3.0, 1e2), share: float = 0.01
 ) -> pd.DataFrame:
     """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long
     double over 8 phases.
 
-    Columns: `double` (embedded), `positions` (this module's own), each engine's, and `formula`.
+    Columns: `double` (the C library), `positions` (this module's own), each engine's with positions, and `formula`.
     """
     rows = []
     for t in times:
         s = setting(build("roundoff", ratio=1e4, times=t), law)
-        dt = share * s.limit
-        steps = int(1.5 * s.contact_time / dt) + 20
-        gap = starting_phases(8) * s.x.speed[0] * dt
-        exact = in_long_double(s, dt, gap, steps)
-        double = (
-            s.x.native_law().impacts(
-                R_star=s.x.R_star, m_star=s.x.m_star, speed=s.x.speed[0], time_step=dt, gap=gap, steps=steps
-            )["rebound_speed"]
-            / s.x.speed[0]
-        )
-        e_n = {"double": double, "positions": with_positions(s, dt, gap, steps)}
-        e_n |= {sampler.name: _tried(sampler, s, dt, gap, steps) for sampler in samplers}
-        row = {
-            "law": law,
-            "times_yield": t,
-            "overlap_max": s.overlap_max,
-            "recovered": s.recovered,
-            "steps": s.contact_time / dt,
-        }
+        x, dt = s.x, share * s.limit
+        steps, gap = s.steps(dt), starting_phases(8) * s.x.speed[0] * dt
+        one = ImpactNumbers(R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=dt, gap=gap)
+        exact = native.impacts_long_double(x.native_law(), steps=steps, **one)["rebound_speed"] / x.speed[0]
+        double = x.native_law().impacts(steps=steps, **one)["rebound_speed"]
+        e_n = {"double": double / x.speed[0], "positions": with_positions(s, dt, gap, steps)}
+        e_n |= {bench.name: _tried(bench, s, dt, gap, steps) for bench in benches if bench.positions}
+        row = {"law": law, "times_yield": t, "overlap_max": s.overlap_max, "recovered": s.recovered}
+        row |= {"steps": s.contact_time / dt}
         row |= {name: float(np.abs(e / exact - 1).max()) for name, e in e_n.items()}
-        row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=s.contact_time / dt)
+        row["formula"] = position_floor(radius=x.R_star, recovered=s.recovered, steps=s.contact_time / dt)
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def _tried(sampler: Sampler, s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
+def _tried(bench: Bench, s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
     """e_n of an engine, NaN where it cannot: that it failed stands in the verdicts."""
     try:
-        return sampler(s.x, time_step, gap, steps).e_n
-    except EpdemError:
+        return bench.impacts(s.x, time_step, gap, steps)[0]
+    except (EpdemError, FloatingPointError):
         return np.full_like(gap, np.nan)

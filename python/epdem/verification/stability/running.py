@@ -3,11 +3,12 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
@@ -15,44 +16,19 @@ from ...impacts.experiment import Experiment
 from ...impacts.plan import stability_limit, starting_phases
 from ...impacts.prediction import predict
 from ...theory.validity import SMALL_DEFORMATION
+from ..runner import STUDIES, Row
+from .bench import Bench
 from .cases import Extreme
-from .sampling import Sampler
 
 FINE = (0.16, 0.08, 0.04, 0.02, 0.01)  # shares of the stability limit: convergence
 COARSE = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5)  # and beyond: where it breaks
+POSITION_COARSE = (0.3, 0.5, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
 FINEST = 1e-4
 ERROR, CREATED = 1e-3, 1e-4  # accepted at 1 % of the limit: 10 times what velocity Verlet leaves there at worst
 BROKEN = 0.01  # share of the energy created at which a run counts as broken
 WRONG = 0.1  # error of e_n at which it is useless
 LEAST_ORDER = 1.7
-
-
-@dataclass
-class Verdict:
-    """One case in one engine with one law. Shares are of the stability limit; NaN: not reached or not asked."""
-
-    case: str
-    group: str
-    engine: str
-    law: str
-    status: str = "passed"  # passed, failed, not representable, embedded only
-    reason: str = ""
-    large_deformation: bool = False
-    strain: float = np.nan  # w a_max/R*, w: share of the weaker body
-    e_n_theory: float = np.nan
-    e_n_error: float = np.nan  # largest over the phases at the finest share of the ladder
-    created: float = np.nan  # energy from nothing over the energy at the start, the same
-    order: float = np.nan
-    useless_at: float = np.nan  # smallest share with e_n wrong by more than 10 %
-    breaks_at: float = np.nan  # smallest share with energy created, no end or no number
-    steps: int = 0
-    seconds: float = 0.0
-    notes: list[str] = field(default_factory=list)
-
-    def fail(self, reason: str) -> None:
-        """Note that the case failed, with one more reason."""
-        self.status = "failed"
-        self.reason = f"{self.reason}; {reason}" if self.reason else reason
+MOST_STEPS = 20_000  # of an impact in an engine with positions
 
 
 @dataclass(frozen=True)
@@ -69,6 +45,10 @@ class Setting:
     contact_time: float
     strain: float
     lost: Callable[[np.ndarray], Any]  # work [J] that a contact loses which reaches an overlap [m]
+
+    def steps(self, time_step: float) -> int:
+        """Of a time step [s] up to beyond the end of the contact."""
+        return int(1.5 * self.contact_time / time_step) + 20
 
 
 def setting(extreme: Extreme, law: str) -> Setting:
@@ -109,42 +89,28 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
     return [(dt, starting_phases(phases) * s.x.speed[0] * dt)]
 
 
-@dataclass(frozen=True)
-class Rung:
-    """One share of the limit: largest error of e_n and largest energy created; inf: a contact did not end, or the
-    engine died (`message`: its last one), as it may when a sphere is thrown out of the box.
+def ladder(s: Setting, bench: Bench, shares: Iterable[float], phases: int | None = None) -> pd.DataFrame:
+    """One row per share of the limit that does not take too long: largest `error` of e_n, largest energy `created`.
+
+    inf: a contact did not end, or the engine died (`message`: its last one), as it may when a sphere is thrown out of
+    the box. The balance takes the law's plastic work at the peak that was sampled: evidence for the law, unlike the
+    work of the sampled forces, which velocity Verlet balances for any force.
     """
-
-    share: float
-    error: float
-    created: float
-    steps: int
-    finite: bool = True
-    message: str = ""
-
-
-def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = None) -> Rung | None:
-    """Run the case at a share of the limit; None if it would take too long.
-
-    The balance takes the law's plastic work at the peak that was sampled: evidence for the law, unlike the work of
-    the sampled forces, which velocity Verlet balances for any force.
-    """
-    dt = share * s.limit
-    steps = int(1.5 * s.contact_time / dt) + 20
-    if steps > sampler.most_steps:
-        return None
-    try:
-        got = [sampler(s.x, h, gap, int(steps * dt / h)) for h, gap in phased(s, dt, phases or sampler.phases)]
-    except EngineError as stopped:
-        return Rung(share, np.inf, np.inf, 0, message=str(stopped))
-    e_n, peak = (np.concatenate([getattr(g, name) for g in got]) for name in ("e_n", "overlap_max"))
-    kinetic = 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
-    with np.errstate(all="ignore"):
-        error = np.abs(e_n / s.e_n - 1.0)
-        created = (e_n**2 * kinetic + s.lost(peak)) / s.energy - 1.0
-    whole = np.isfinite(error) & np.isfinite(created)
-    worst = [float(np.where(whole, value, np.inf).max()) for value in (error, created)]
-    return Rung(share, worst[0], worst[1], sum(g.steps for g in got), all(g.finite for g in got))
+    rows, kinetic = [], 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
+    phases = phases or (8 if bench.positions else 16)
+    for dt in (share * s.limit for share in shares):
+        if bench.positions and s.steps(dt) > MOST_STEPS:
+            continue
+        row = {"share": dt / s.limit, "error": np.inf, "created": np.inf, "message": ""}
+        try:
+            runs = [bench.impacts(s.x, h, gap, int(s.steps(dt) * dt / h)) for h, gap in phased(s, dt, phases)]
+            e_n, peak = (np.concatenate(values) for values in zip(*runs, strict=True))
+            created = (e_n**2 * kinetic + s.lost(peak)) / s.energy - 1.0
+            row |= {"error": np.abs(e_n / s.e_n - 1.0).max(), "created": created.max()}
+        except EngineError as stopped:
+            row["message"] = str(stopped)
+        rows.append(row)
+    return pd.DataFrame(rows, columns=["share", "error", "created", "message"])
 
 
 def position_floor(*, radius: float, recovered: float, steps: float) -> float:
@@ -158,78 +124,64 @@ def position_floor(*, radius: float, recovered: float, steps: float) -> float:
     return 0.5 * math.sqrt(steps) * EPS * radius / recovered
 
 
-def floor(s: Setting, sampler: Sampler, share: float) -> float:
+def floor(s: Setting, bench: Bench, share: float) -> float:
     """Round-off of e_n (relative): eps per step, or that of overlaps which are differences of positions."""
     steps = s.contact_time / (share * s.limit)
     own = 10 * EPS * math.sqrt(steps)
-    if not sampler.positions:
+    if not bench.positions:
         return own
     radius = max(r for r in (s.x.body.radius, s.x.target.radius) if np.isfinite(r))
     return own + position_floor(radius=radius, recovered=s.recovered, steps=steps)
 
 
-def slope(shares: list[float], errors: list[float], noise: float) -> float:
-    """Observed order: slope of log error over log dt where the error is above the noise; NaN below three points."""
+def order(shares: Iterable[float], errors: Iterable[float], noise: float) -> Row:
+    """Observed order: slope of log error over log dt where the error is above the noise; None below three points."""
     good = [(h, e) for h, e in zip(shares, errors, strict=True) if 5 * noise < e < 0.1]
     step, error = np.log(np.array(good).reshape(-1, 2)).T
-    return float(np.polyfit(step, error, 1)[0]) if len(good) > 2 else np.nan
+    found = float(np.polyfit(step, error, 1)[0]) if len(good) > 2 else None
+    return {"order": found, "lack_of_order": None if found is None else LEAST_ORDER - found}
 
 
-def judge(extreme: Extreme, law: str, sampler: Sampler, coarse: Sequence[float] = COARSE) -> Verdict:
-    """The verdict on an impact case."""
-    return judged(extreme, law, sampler, lambda v, s: _ladder(v, s, sampler, coarse))
+def impact(s: Setting, bench: Bench, coarse: Iterable[float] = ()) -> Row:
+    """An impact: the ladder of steps that converge, one at FINEST, and the coarse ones (none given: all)."""
+    fine, finest = ladder(s, bench, FINE), ladder(s, bench, (FINEST,), phases=1)
+    if died := [f"at {r.share:g} of the limit: {r.message}" for r in fine.itertuples() if r.message]:
+        raise EngineError("; ".join(died))
+    if fine.empty:
+        raise EngineError("even 16 % of the limit would take too many steps")
+    last = fine.iloc[-1]
+    noise = 2 * floor(s, bench, last["share"])
+    scale = (last["share"] / FINE[-1]) ** 2  # where the ladder had to stop early its error is larger, by the order 2
+    found = ladder(s, bench, coarse or (POSITION_COARSE if bench.positions else COARSE))
+    return order(fine["share"], fine["error"], noise) | {
+        "finest_share": last["share"],
+        "e_n_error": last["error"],
+        "e_n_limit": ERROR * scale + noise,
+        "created": last["created"],
+        "created_limit": CREATED * scale + 2 * noise,
+        "finest_error": None if finest.empty else finest["error"].iloc[0],
+        "useless_at": found["share"][~(found["error"] <= WRONG)].min(),
+        "breaks_at": found["share"][~(found["created"] <= BROKEN)].min(),
+    }
 
 
-def judged(
-    extreme: Extreme, law: str, sampler: Sampler, judges: Callable[[Verdict, Setting], None], *, reach: float = 1.0
-) -> Verdict:
-    """The verdict of `judges` on a case, if the sampler can represent overlaps of `reach` times the largest."""
-    v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
+def judge(extreme: Extreme, law: str, bench: Bench, measures: Callable[[Setting, Bench], Row] = impact) -> Row:
+    """The row of a case, judged. status: passed, failed, or not representable; NaN: not reached or not asked.
+
+    strain: w a_max/R*, w: share of the weaker body. created: energy from nothing over the energy at the start.
+    useless_at, breaks_at: smallest share of the limit with e_n wrong by more than 10 %, with energy created, no end or
+    no number.
+    """
+    row: Row = {"case": extreme.name, "group": extreme.group, "engine": bench.name, "law": law}
+    row["large_deformation"] = False
+    begin, reach = time.perf_counter(), 1.0 if extreme.kind == "impact" else 2.0
     try:
         s = setting(extreme, law)
-        v.e_n_theory, v.strain = s.e_n, s.strain
-        v.large_deformation = s.strain > SMALL_DEFORMATION
-        if sampler.positions and (why := not_representable(s.x, reach * s.overlap_max)):
-            v.status, v.reason = "not representable", why
-        else:
-            judges(v, s)
-    except EpdemError as error:
-        v.fail(str(error))
-    v.seconds = time.perf_counter() - begin
-    return v
-
-
-def _ladder(v: Verdict, s: Setting, sampler: Sampler, coarse: Sequence[float]) -> None:
-    fine = [rung for share in FINE if (rung := measure(s, sampler, share))]
-    if not fine:
-        v.fail("even 16 % of the limit would take too many steps")
-        return
-    last = fine[-1]
-    noise = 2 * floor(s, sampler, last.share)
-    v.e_n_error, v.created = last.error, last.created
-    v.order = slope([r.share for r in fine], [r.error for r in fine], noise)
-    scale = (last.share / FINE[-1]) ** 2  # where the ladder had to stop early its error is larger, by the order 2
-    if not v.e_n_error <= ERROR * scale + noise:
-        v.fail(f"e_n off by {v.e_n_error:.2g} at {last.share:.2g} of the limit")
-    if not v.created <= CREATED * scale + 2 * noise:
-        v.fail(f"energy created: {v.created:.2g} at {last.share:.2g} of the limit")
-    if v.order < LEAST_ORDER:
-        v.fail(f"order of convergence {v.order:.2f}")
-    if last.share > FINE[-1]:
-        v.notes.append(f"finest share {last.share:g}: more would take too many steps")
-    finest = measure(s, sampler, FINEST, phases=1)
-    if finest is None:
-        v.notes.append(f"dt = {FINEST:g} of the limit would take too many steps")
-    elif not finest.error <= ERROR:
-        v.fail(f"e_n off by {finest.error:.2g} at {FINEST:g} of the limit")
-    rungs = [rung for share in coarse if (rung := measure(s, sampler, share))]
-    v.useless_at = min((r.share for r in rungs if not r.error <= WRONG), default=np.nan)
-    v.breaks_at = min((r.share for r in rungs if not r.created <= BROKEN), default=np.nan)
-    for rung in fine:
-        if rung.message:
-            v.fail(f"at {rung.share:g} of the limit: {rung.message}")
-    v.notes += [f"at {r.share:g} of the limit: {r.message}" for r in rungs if r.message]
-    everything = [*fine, *rungs, *filter(None, [finest])]
-    v.steps = sum(r.steps for r in everything)
-    if wild := [r.share for r in everything if not r.finite]:
-        v.fail(f"not finite at {min(wild):g} of the limit")
+        row |= {"e_n_theory": s.e_n, "strain": s.strain, "large_deformation": s.strain > SMALL_DEFORMATION}
+        if bench.positions and (why := not_representable(s.x, reach * s.overlap_max)):
+            return row | {"status": "not representable", "reason": why}
+        row = STUDIES[extreme.kind].judged(row | measures(s, bench))
+    except (EpdemError, FloatingPointError) as error:
+        row |= {"passed": False, "reason": str(error)}
+    status = "passed" if row.pop("passed") else "failed"
+    return row | {"status": status, "seconds": time.perf_counter() - begin}

@@ -2,8 +2,7 @@
 """The whole set on the given engines, and its tables."""
 
 import tempfile
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
@@ -13,20 +12,22 @@ from ...engines import DEFAULT_ENGINE, ImpactEngine, scene_engine
 from ...engines.embedded import Embedded
 from ...engines.yade.engine import Yade
 from ...errors import CaseError
-from ...jobs.engine import Feature, check_law, has_law, require
+from ...jobs.engine import check_law, has_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from ..models import engine
-from ..runner import STUDIES
+from ..runner import STUDIES, Progress, Row, silent
 from . import bulk
+from .bench import Bench
 from .cases import Extreme, extremes
-from .repeats import judge_repeats
+from .repeats import bounces, reloads
 from .roundoff import floors
-from .running import COARSE, judge
-from .sampling import EmbeddedSampler, PositionSampler, Sampler
+from .running import impact, judge
+from .two_walls import two_walls
 
-POSITION_COARSE = (0.3, 0.5, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
-BOUNCE_STEPS = 10**9
+BOUNCE_STEPS, RELOADS = 10**9, 10**4
 LAW_OF_SLOW = "thornton"  # if it is among those given; a slow engine runs the first and last case of each group
+STATUS = ("passed", "failed", "not representable", "embedded only")
+NUMBERS = ["e_n_error", "created", "order", "useless_at", "breaks_at", "seconds"]  # of the summary; NaN: not asked
 
 
 @dataclass(frozen=True)
@@ -46,14 +47,19 @@ class Outcome:
         return bool((self.verdicts["status"] != "failed").all() and (self.bulk.empty or self.bulk["passed"].all()))
 
 
-def samplers(names: list[str], folder: Path) -> list[Sampler]:
-    """A sampler per engine. Raises EngineError if one cannot run here."""
-    chosen: list[Sampler] = []
-    for name in names:
-        tool = engine(name)
-        require(tool)
-        chosen.append(PositionSampler(tool, folder / name) if Feature.POSITIONS in tool.features else EmbeddedSampler())
-    return chosen
+def verdict(extreme: Extreme, law: str, bench: Bench, *, steps: int = BOUNCE_STEPS, reloaded: int = RELOADS) -> Row:
+    """The judged row of a case of any kind; bounces run in the embedded engine alone."""
+    if bench.positions and extreme.kind == "bounces":
+        reason = "not run: 1e9 steps take hours in an engine with positions"
+        about = {"case": extreme.name, "group": extreme.group, "engine": bench.name, "law": law}
+        return about | {"status": "embedded only", "reason": reason, "large_deformation": False}
+    kinds = {
+        "impact": impact,
+        "bounces": lambda s, bench: bounces(s, steps),
+        "reloads": lambda s, bench: reloads(s, bench, reloaded),
+        "two_walls": two_walls,
+    }
+    return judge(extreme, law, bench, kinds[extreme.kind])
 
 
 def run(
@@ -63,16 +69,14 @@ def run(
     groups: list[str] | None = None,
     every: int = 1,
     steps: int | None = None,
-    cycles: int = 10_000,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Outcome:
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine (none: embedded).
 
-    `steps` is the length of the drift by bounces (1e9), `cycles` the number of reloads. Laws none given: all that the
-    engine has. Without `groups` the round-off floor is measured, and the stiff bulk scenes run if LIGGGHTS is among the
-    engines. Raises CaseError for a law or group that does not exist,
-    a law that an engine does not have and a choice that leaves an engine no case, EngineError for an engine that is not
-    here.
+    `steps` is the length of the drift by bounces (1e9). Laws none given: all that the engine has. Without `groups` the
+    round-off floor is measured, and the stiff bulk scenes run if LIGGGHTS is among the engines. Raises CaseError for a
+    law or group that does not exist, a law that an engine does not have and a choice that leaves an engine no case,
+    EngineError for an engine that is not here.
     """
     for option, given, known in (
         ("--law", laws, {**LAWS, **ADHESIVE}),
@@ -80,9 +84,9 @@ def run(
     ):
         if wrong := [name for name in given if name not in known]:
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    engines = list(dict.fromkeys(engines)) or [Embedded.name]
-    for name, law in product(engines, laws):
-        check_law(engine(name), law)
+    tools = {name: engine(name) for name in engines or [Embedded.name]}
+    for tool, law in product(tools.values(), laws):
+        check_law(tool, law)
     laws = list(dict.fromkeys(laws)) or [*LAWS, *ADHESIVE]
     plain = [law for law in laws if law in LAWS]
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
@@ -90,44 +94,35 @@ def run(
         raise CaseError(
             "--steps is the length of the drift by bounces, which --group or --every leaves out; leave it out"
         )
-    work = {name: _work(engine(name), laws, chosen) for name in engines}
-    if idle := [name for name in engines if not work[name]]:
+    work = {name: _work(tool, laws, chosen) for name, tool in tools.items()}
+    if idle := [name for name in tools if not work[name]]:
         raise CaseError(f"--engine {idle[0]}: --law, --group and --every leave it no case; leave one of them out")
-    rows, tables = [], []
+    require(*tools.values())
+    rows, rounded, scenes = [], pd.DataFrame(), pd.DataFrame()
     with tempfile.TemporaryDirectory(prefix="epdem-stability-") as scratch:
-        for sampler in samplers(engines, Path(scratch)):
-            coarse = COARSE if not sampler.positions else POSITION_COARSE
-            for law, extreme in work[sampler.name]:
-                progress(f"{sampler.name}, {law}: {extreme.name}")
-                if extreme.kind == "impact":
-                    rows.append(judge(extreme, law, sampler, coarse))
-                else:
-                    rows.append(judge_repeats(extreme, law, sampler, steps=steps or BOUNCE_STEPS, cycles=cycles))
-        if not groups:
+        benches = [Bench(tool, Path(scratch) / name) for name, tool in tools.items()]
+        for bench in benches:
+            for law, extreme in work[bench.name]:
+                progress(f"{bench.name}, {law}: {extreme.name}")
+                rows.append(verdict(extreme, law, bench, steps=steps or BOUNCE_STEPS))
+        if plain and not groups:
             progress("round-off")
-            others = [s for s in samplers(engines, Path(scratch)) if s.positions]
-            tables = [floors(law, others) for law in plain]
-    verdicts = pd.DataFrame([asdict(v) for v in rows])
-    verdicts["notes"] = verdicts["notes"].map("; ".join)
-    stiff = plain and not groups and DEFAULT_ENGINE in engines
-    scenes = bulk.run(plain, scene_engine(DEFAULT_ENGINE), progress=progress) if stiff else pd.DataFrame()
-    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), scenes)
+            rounded = pd.concat([floors(law, benches) for law in plain], ignore_index=True)
+    if plain and not groups and DEFAULT_ENGINE in tools:
+        scenes = bulk.run(plain, scene_engine(DEFAULT_ENGINE), progress=progress)
+    verdicts = pd.DataFrame(rows)
+    verdicts[NUMBERS] = verdicts.reindex(columns=NUMBERS).astype(float)
+    return Outcome(verdicts, rounded, scenes)
 
 
 def _work(tool: ImpactEngine, laws: list[str], chosen: list[Extreme]) -> list[tuple[str, Extreme]]:
     """The laws and cases of an engine."""
     known = [law for law in laws if has_law(tool, law)]
     if isinstance(tool, Yade):  # seconds for a plan
-        known, chosen = [LAW_OF_SLOW] if LAW_OF_SLOW in known else known, ends(chosen)
+        groups = [[e for e in chosen if e.group == name] for name in dict.fromkeys(e.group for e in chosen)]
+        known = [LAW_OF_SLOW] if LAW_OF_SLOW in known else known
+        chosen = [e for group in groups for e in dict.fromkeys((group[0], group[-1]))]
     return [(law, x) for law in known for extreme in chosen if extreme.suits(law) for x in extreme.variants(law)]
-
-
-def ends(chosen: list[Extreme]) -> list[Extreme]:
-    """The first and the last case of each group."""
-    groups: dict[str, list[Extreme]] = {}
-    for extreme in chosen:
-        groups.setdefault(extreme.group, []).append(extreme)
-    return [e for group in groups.values() for e in ([group[0]] if len(group) == 1 else [group[0], group[-1]])]
 
 
 def tables(outcome: Outcome) -> dict[str, pd.DataFrame]:
@@ -137,26 +132,20 @@ def tables(outcome: Outcome) -> dict[str, pd.DataFrame]:
 
 
 def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
-    """One row per engine and law: how many passed, and the worst numbers."""
-    rows = []
-    for (name, law), part in verdicts.groupby(["engine", "law"], sort=False):
-        count = part["status"].value_counts()
-        ran = part[part["status"].isin(["passed", "failed"]) & ~part["group"].isin(["bounces", "reloads"])]
-        hit = ran[ran["group"] != "two_walls"]  # an impact has an e_n
-        rows.append(
-            {
-                "engine": name,
-                "law": law,
-                "passed": count.get("passed", 0),
-                "failed": count.get("failed", 0),
-                "not representable": count.get("not representable", 0),
-                "embedded only": count.get("embedded only", 0),
-                "largest error of e_n": hit["e_n_error"].max(),
-                "largest energy gain": ran["created"].max(),
-                "smallest order": ran["order"].min(),
-                "error above 10 % at": ran["useless_at"].min(),
-                "unstable at": ran["breaks_at"].min(),
-                "longest run [s]": part["seconds"].max(),
-            }
-        )
-    return pd.DataFrame(rows)
+    """One row per engine and law: how many of each status, and the worst numbers."""
+    impacts = verdicts["e_n_error"].where(verdicts["group"] != "two_walls")  # an impact has an e_n
+    ran = verdicts.assign(impacts=impacts)[verdicts["status"].isin(STATUS[:2])]
+    ran = ran[~ran["group"].isin(["bounces", "reloads"])]
+    by = ["engine", "law"]
+    count = verdicts.groupby([*by, "status"], sort=False).size().unstack(fill_value=0)
+    worst = ran.groupby(by, sort=False).agg(
+        **{
+            "largest error of e_n": ("impacts", "max"),
+            "largest energy gain": ("created", "max"),
+            "smallest order": ("order", "min"),
+            "error above 10 % at": ("useless_at", "min"),
+            "unstable at": ("breaks_at", "min"),
+        }
+    )
+    longest = verdicts.groupby(by)["seconds"].max().rename("longest run [s]")
+    return count.reindex(columns=STATUS, fill_value=0).join(worst).join(longest).reset_index()

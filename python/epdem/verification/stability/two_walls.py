@@ -5,13 +5,11 @@ import numpy as np
 
 from ...theory.backbones import Backbone
 from ...theory.numerics import gauss
-from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, slope
-from .sampling import PositionSampler, Sampler
+from ..runner import Row
+from .bench import Bench
+from .running import BROKEN, COARSE, FINE, POSITION_COARSE, Setting, order
 from .variants import between_walls, edits
 
-SHARES = (0.16, 0.08, 0.04, 0.02, 0.01)  # of the limit of two springs, 1/sqrt(2) of that of one
-COARSE = np.arange(0.2, 1.51, 0.1)
-POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
 PERIODS = 20.0  # length of a run in stability limits
 
 
@@ -70,30 +68,26 @@ def balance(s: Setting, overlap: np.ndarray, velocity: np.ndarray) -> np.ndarray
     return np.asarray(total / total[0])
 
 
-def path(s: Setting, sampler: Sampler, share: float) -> tuple[np.ndarray, np.ndarray]:
+def path(s: Setting, bench: Bench, share: float) -> tuple[np.ndarray, np.ndarray]:
     """Overlap with the first wall [m] and velocity towards it [m/s] at a share of the limit of two springs."""
     time_step, steps = share * s.limit / np.sqrt(2.0), int(PERIODS / share)
-    if isinstance(sampler, PositionSampler):
-        got = between_walls(s, sampler, s.overlap_max / 2, time_step, steps)
-        known = edits(sampler).unknown  # the balance begins where the law knows the overlaps of the start
-        return got.overlap[0, known:], got.velocity[0, known:]
-    return embedded_path(s, time_step, steps)
+    if not bench.positions:
+        return embedded_path(s, time_step, steps)
+    got = between_walls(s, bench, s.overlap_max / 2, time_step, steps)
+    known = edits(bench).unknown  # the balance begins where the law knows the overlaps of the start
+    return got.overlap[0, known:], got.velocity[0, known:]
 
 
-def judge_two_walls(v: Verdict, s: Setting, sampler: Sampler) -> None:
-    """The energy balance of a sphere between two walls holds to second order in dt."""
-    drift = []
-    for share in SHARES:
-        total = balance(s, *path(s, sampler, share))
-        drift.append(float(np.abs(total - 1).max()))
-        v.created = float((total - 1).max())
-        v.steps += total.size - 1
-    v.e_n_error, v.order = drift[-1], slope(list(SHARES), drift, 1e-13)
-    if not v.created <= CREATED:
-        v.fail(f"energy created: {v.created:.2g} at {SHARES[-1]:g} of the limit")
-    if v.order < LEAST_ORDER:
-        v.fail(f"order of convergence {v.order:.2f}")
-    for share in COARSE if not sampler.positions else POSITION_COARSE:
-        if not (balance(s, *path(s, sampler, float(share))) - 1).max() <= BROKEN:
-            v.breaks_at = round(float(share), 2)
-            break
+def two_walls(s: Setting, bench: Bench) -> Row:
+    """The energy balance of a sphere between two walls, which holds to second order in dt."""
+
+    def off(share: float) -> np.ndarray:
+        return balance(s, *path(s, bench, share)) - 1
+
+    drift = [np.abs(off(share)).max() for share in FINE[:-1]]
+    last = off(FINE[-1])
+    drift.append(np.abs(last).max())
+    coarse = POSITION_COARSE if bench.positions else COARSE
+    breaks_at = next((share for share in coarse if not off(share).max() <= BROKEN), np.nan)
+    found = {"e_n_error": drift[-1], "created": last.max(), "breaks_at": breaks_at}
+    return found | order(FINE, drift, 1e-13)

@@ -11,8 +11,8 @@ from ...engines.yade.engine import Yade
 from ...errors import EngineError
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
+from .bench import Bench
 from .running import Setting
-from .sampling import PositionSampler
 
 CYCLE = 64  # samples of a cycle of overlaps: a triangle, up in the first half
 LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that end lose their history
@@ -66,13 +66,13 @@ class YadeEdits:
         ]
 
 
-def edits(sampler: PositionSampler) -> LiggghtsEdits | YadeEdits:
+def edits(bench: Bench) -> LiggghtsEdits | YadeEdits:
     """The edits of an engine's deck. Raises EngineError for an engine without."""
-    if isinstance(sampler.engine, Liggghts):
+    if isinstance(bench.tool, Liggghts):
         return LiggghtsEdits()
-    if isinstance(sampler.engine, Yade):
+    if isinstance(bench.tool, Yade):
         return YadeEdits()
-    raise EngineError(f"engine {sampler.name}: its deck cannot be made into another set-up")
+    raise EngineError(f"engine {bench.name}: its deck cannot be made into another set-up")
 
 
 def edit(deck: Path, change: Edit) -> str:
@@ -88,21 +88,21 @@ def edit(deck: Path, change: Edit) -> str:
     return line
 
 
-def between_walls(s: Setting, sampler: PositionSampler, overlap: float, time_step: float, steps: int) -> Trajectory:
+def between_walls(s: Setting, bench: Bench, overlap: float, time_step: float, steps: int) -> Trajectory:
     """A sphere that overlaps two walls by `overlap` [m] at the start and moves towards the first."""
-    x, known = s.x, edits(sampler)
-    p, deck = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-overlap])), sampler.folder / known.deck
-    sampler.engine.write(p, sampler.folder)
+    x, known = s.x, edits(bench)
+    p, deck = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-overlap])), bench.folder / known.deck
+    bench.tool.write(p, bench.folder)
     first = edit(deck, Edit(known.wall, ()))
     edit(deck, Edit(known.wall, (known.second_wall(first, 2 * (x.body.radius - overlap)),)))
-    return sampler.engine.run(p, sampler.folder)
+    return bench.tool.run(p, bench.folder)
 
 
-def carried(s: Setting, sampler: PositionSampler, cycles: int) -> Trajectory:
+def carried(s: Setting, bench: Bench, cycles: int) -> Trajectory:
     """A sphere carried from LOWEST to its largest overlap and back, `cycles` times CYCLE steps with the same bits."""
-    known, low = edits(sampler), LOWEST * s.overlap_max
+    known, low = edits(bench), LOWEST * s.overlap_max
     p = Plan(s.x, 1e-3 * s.limit, cycles * CYCLE, 1, np.zeros(1), np.array([-low]))
-    sampler.engine.write(p, sampler.folder)
+    bench.tool.write(p, bench.folder)
     for change in known.carry(s.x.body.radius - low, s.overlap_max - low, CYCLE):
-        edit(sampler.folder / known.deck, change)
-    return sampler.engine.run(p, sampler.folder)
+        edit(bench.folder / known.deck, change)
+    return bench.tool.run(p, bench.folder)
