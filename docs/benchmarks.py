@@ -16,7 +16,7 @@ from pages import markdown
 from epdem.errors import CaseError
 from epdem.report.chart import GREY, Axis, Chart, Panel, Series, save
 from epdem.scenes import results
-from epdem.verification.measured_data import shown, validate
+from epdem.verification.measured_data import validate
 from epdem.verification.pages import validation_chart
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -150,7 +150,7 @@ def main() -> None:
     runs, text = ROOT / "runs/community", PAGE.read_text(encoding="utf-8")
     result = validate(out=ROOT / "runs/validate", force=True)
     save(validation_chart(result), ROOT / "docs/figures", data=False)
-    measured = markdown(shown(result.summary))
+    measured = markdown(result.summary)
     tables = {"impact": _impact(runs), "drum": _drum(runs), "long": _long(runs), "measured": measured}
     tables["points"] = _points(result.points)
     for name, table in tables.items():

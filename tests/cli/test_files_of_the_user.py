@@ -21,8 +21,8 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
     "cost": (["verify", "cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
     "motion": (["verify", "motion", "steel.toml", "-e", "embedded", "-o", "d"], "d/motions.csv"),
     "stability": (
-        ["verify", "stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d/all.csv"],
-        "d/all.csv",
+        ["verify", "stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d"],
+        "d/stability.csv",
     ),
     "soften": (["soften", "steel.toml", "-k", "10", "-o", "d/soft.toml"], "d/soft.toml"),
 }
@@ -69,6 +69,9 @@ def test_a_place_that_cannot_be_written_to_is_said_before_the_work_and_by_its_na
     monkeypatch.setattr(stability, "run", lambda *words, **options: pytest.fail("it ran"))
     (tmp_path / "d").write_text("a file")
     done = call(WRITERS["stability"][0], capsys, monkeypatch)
+    assert done.code == 2 and done.err.startswith("epdem: d: ")
+    shutil.copy(CASES / "steel_wall.toml", tmp_path / "steel.toml")
+    done = call(WRITERS["soften"][0], capsys, monkeypatch)
     assert done.code == 2 and f"{tmp_path}/d is not a folder that can be written to" in done.err
     long = tmp_path / ("x" * 256)
     with pytest.raises(OSError, match="File name too long") as found, atomic(long):

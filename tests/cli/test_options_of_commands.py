@@ -75,7 +75,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     ),
     "stability": (
         ("verify stability",),
-        {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"}
+        {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there"}
         | {"force": None},
     ),
     "view a scene": (("view", "scene.toml"), {"out": "there.png", "force": None}),
@@ -107,6 +107,7 @@ OTHERS = [
     "runs/figures/figure_8_16.png",
     "runs/steel_wall/cost/cost.csv",
     "runs/validate/measured.csv",
+    "runs/stability/stability.csv",
 ]
 IMPACTS_ONLY = ("predict", "verify cost", "verify crosscheck", "verify motion", "calibrate")
 

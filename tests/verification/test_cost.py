@@ -54,7 +54,7 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
     bulk = pd.DataFrame([{"model": "liggghts, cavity", "spheres": 512} | numbers])
     text = page.document(embedded, bulk, "python docs/cost.py")
     assert "512 steel spheres" in text
-    assert "| liggghts, cavity | 0.1 | 0.0001 | 0.0003 | 2.00 |" in text
+    assert "| liggghts, cavity | 512 | 0.1 | 0.0001 | 0.0003 | 2 |" in text
     text = page.document(embedded, None, "python docs/cost.py")
     assert "```sh by hand\npython docs/cost.py\n```" in text and "embedded, cavity" in text
     assert json.dumps(embedded.models.to_dict("list"))

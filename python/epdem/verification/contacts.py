@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from ..api.files import Case
 from ..base import paths
 from ..base.files import results_folder, write_texts
-from ..case.impact import parse
 from ..case.sizes import LARGEST_FILE
 from ..case.toml import text_of
 from ..engines.lammps import launcher
@@ -71,18 +71,14 @@ class ContactTest:
         declared = find_law(law).parameters
         options = words[len(declared) :]
         friction = options.index("tangential") if "tangential" in options else None
-        material = {"young_modulus": f"{E} Pa", "poisson_ratio": float(nu)}
-        sphere = {"radius": f"{self.value('diam') / 2} m", "material": "steel"}
-        numbers = {
-            p.name: float(x) if p.unit == "1" else f"{x} {p.unit}" for p, x in zip(declared, words, strict=False)
-        }
-        case = {
-            "case": {"name": self.name, "title": self.name, "source": f"{self.name}.yaml"},
-            "materials": {"steel": material | {"density": f"{self.value('dens')} kg/m^3"}},
-            "impact": {"kind": "sphere-sphere", "body": sphere, "target": sphere, "speeds": ["1 m/s"]},
-            "law": {"name": law, **numbers},
-        }
-        x = experiment(parse(case, f"{self.name}.yaml"))
+        sphere = {"radius": self.value("diam") / 2, "material": "steel"}
+        case = Case(
+            case={"name": self.name},
+            materials={"steel": {"young_modulus": float(E), "poisson_ratio": float(nu), "density": self.value("dens")}},
+            impact={"kind": "sphere-sphere", "body": sphere, "target": sphere, "speeds": [1.0]},
+            law={"name": law} | dict(zip((p.name for p in declared), map(float, words), strict=False)),
+        )
+        x = experiment(case.model)
         if friction is None:
             return Touch(x, 0.0, "history")
         return Touch(x, float(options[friction + 2]), options[friction + 1])  # type: ignore[arg-type]

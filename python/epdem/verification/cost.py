@@ -6,7 +6,6 @@ Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own ela
 
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,6 @@ import pandas as pd
 from ..case.impact import Case, load
 from ..case.toml import error_context
 from ..engines import DEFAULT_ENGINE, ImpactEngine
-from ..engines.embedded import Embedded
 from ..errors import EngineError
 from ..impacts.experiment import experiment, pair_of
 from ..impacts.plan import Plan, plan
@@ -25,7 +23,7 @@ from ..impacts.prediction import Prediction, predict
 from ..jobs.engine import require
 from ..laws.strengths import default_numbers
 from .models import REFERENCE, SAME_LAW, engine, only_law
-from .runner import compare_impacts
+from .runner import STUDIES, Progress, compare_impacts, silent
 from .stability.cases import HARDENING
 from .timing import seconds
 
@@ -34,7 +32,6 @@ QUANTITIES = ("e_n", "contact_time", "force_max")
 TARGETS = (1e-2, 1e-3, 1e-4)
 LEAST_PHASES = 8
 EXPONENT = 0.25  # of a law that hardens, where the case has another law
-ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
 
 
 @dataclass(frozen=True)
@@ -85,14 +82,10 @@ def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ..
 
 def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
     """Largest and rms errors over all speeds and phases, relative to theory; NaN where a contact did not end."""
-    for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
-        try:
-            longest = replace(p, steps=int(p.steps * longer))
-            rows, _ = compare_impacts(longest, c.prediction, c.engine, folder)
-            break
-        except EngineError:
-            if longer == 2.0:
-                return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
+    try:  # coarse steps stretch contacts
+        rows, _ = compare_impacts(replace(p, steps=2 * p.steps), c.prediction, c.engine, folder)
+    except EngineError:
+        return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
     return {f"{q}_error": float(rows[f"{q}_error"].max()) for q in QUANTITIES} | {
         f"{q}_rms": float(np.sqrt((rows[f"{q}_rms"] ** 2).mean())) for q in QUANTITIES
     }
@@ -112,7 +105,7 @@ def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
 
 
 def _timings(
-    chosen: list[Model], steps: tuple[int, ...], repetitions: int, folder: Path, progress: Callable[[str], None]
+    chosen: list[Model], steps: tuple[int, ...], repetitions: int, folder: Path, progress: Progress
 ) -> pd.DataFrame:
     """One row per repetition, model and steps. Models alternate, so that drifts of the machine hit all."""
     rows: list[dict[str, Any]] = []
@@ -123,11 +116,6 @@ def _timings(
                 rows.append({"repetition": k, "model": c.label, "steps": n} | seconds(c.engine, c.plans[n], folder))
                 rows[-1]["ns_per_step"] = rows[-1]["stepping"] / (c.plans[n].n * c.plans[n].steps) * 1e9
     return pd.DataFrame(rows)
-
-
-def spread(x: pd.Series) -> float:
-    """Distance of the quartiles."""
-    return float(x.quantile(0.75) - x.quantile(0.25))
 
 
 def over_reference(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
@@ -143,12 +131,12 @@ def run(
     laws: list[str],
     steps: tuple[int, ...] = STEPS,
     repetitions: int = 5,
-    progress: Callable[[str], None] = lambda text: None,
+    progress: Progress = silent,
 ) -> Outcome:
-    """Errors and times of every model at every number of steps in the shortest contact; engines none: ENGINES."""
+    """Errors and times of every model at every number of steps in the shortest contact (no engines: the study's)."""
     case, begin = load(case_path), time.perf_counter()
     with error_context(case_path):
-        chosen = models(case, engines or [*ENGINES], laws, steps)
+        chosen = models(case, engines or [*STUDIES["cost"].engines], laws, steps)
     rows = []
     with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
         folder = Path(scratch)
@@ -162,24 +150,21 @@ def run(
 
 
 def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Medians and quartile distances beside the errors; then one row per model."""
+    """Medians of the times beside the errors; then one row per model."""
     times["ratio"] = over_reference(times, "ns_per_step", ["repetition", "steps"])
-    groups = times.groupby(["model", "steps"])
-    middle = groups[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
-    middle["stepping_spread"] = groups["stepping"].apply(spread)
+    middle = times.groupby(["model", "steps"])[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
     rows = rows.merge(middle.reset_index(), on=["model", "steps"])
     rows["ns_per_impact"] = rows["stepping"] / rows["impacts"] * 1e9
     summary = []
     for label, part in rows.groupby("model", sort=False):
-        fine = times[(times["model"] == label) & (times["steps"] >= 300)]  # a long loop: little but stepping
-        fine = times[times["model"] == label] if fine.empty else fine
+        fine = times[(times["model"] == label) & (times["steps"] >= min(300, part["steps"].max()))]
         row = {
             "model": label,
             "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
             "best_error": part["e_n_error"].min(),
             "ns_per_step": fine["ns_per_step"].median(),
             "ratio_to_hertz": fine["ratio"].median(),
-            "ratio_spread": spread(fine["ratio"]),
+            "ratio_spread": fine["ratio"].quantile(0.75) - fine["ratio"].quantile(0.25),
             "startup": part["startup"].median(),
             "setup": part["setup"].median(),
         }

@@ -9,7 +9,7 @@ import pandas as pd
 
 from ..base.tables import write_csv
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, save
-from .cost import TARGETS, Outcome
+from .cost import QUANTITIES, Outcome
 
 
 def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
@@ -53,62 +53,15 @@ def chart(outcome: Outcome) -> Chart:
     )
 
 
-def _cell(steps: float, nanoseconds: float) -> str:
-    return "not reached" if np.isnan(steps) else f"{steps:.0f} steps, {nanoseconds / 1000:.3g} us"
-
-
-def cheapest_table(models: pd.DataFrame) -> pd.DataFrame:
-    """One row per model, in words."""
-    rows = []
-    for _, c in models.iterrows():
-        hertz = "" if np.isnan(c["ratio_to_hertz"]) else f"{c['ratio_to_hertz']:.2f} +- {c['ratio_spread'] / 2:.2f}"
-        row = {
-            "model": c["model"],
-            "order": "none" if np.isnan(c["order"]) else f"{c['order']:.2f}",
-            "smallest error": f"{c['best_error']:.1e}",
-            "ns per step": f"{c['ns_per_step']:.3g}",
-            "over built-in hertz": hertz,
-        }
-        row |= {f"for {100 * t:g} %": _cell(c[f"steps_for_{t:g}"], c[f"ns_for_{t:g}"]) for t in TARGETS}
-        row |= {"start-up": f"{c['startup'] * 1000:.0f} ms", "set-up": f"{c['setup'] * 1000:.1f} ms"}
-        rows.append(row)
-    return pd.DataFrame(rows)
-
-
-def error_table(rows: pd.DataFrame) -> pd.DataFrame:
-    """Errors of every model at every number of steps, largest and rms over speeds and phases."""
-    names = {"e_n": "e_n", "contact_time": "time", "force_max": "peak force"}
-    columns = {"model": "model", "steps": "steps"}
-    columns |= {
-        f"{q}_{kind}": f"{text} {short}"
-        for q, text in names.items()
-        for kind, short in (("error", "max"), ("rms", "rms"))
-    }
-    frame = rows[[*columns, "ns_per_impact"]].rename(columns=columns | {"ns_per_impact": "ns per impact"})
-    return frame.map(lambda v: f"{v:.2g}" if isinstance(v, float) else str(v))
-
-
-def bulk_table(bulk: pd.DataFrame) -> pd.DataFrame:
-    """One row per model and step of a bulk scene, in words."""
-    rows = [
-        {
-            "model": b.model,
-            "share of the limit": f"{b.share:g}",
-            "error of the mean": f"{b.error:.2g}",
-            "rms error of a sphere": f"{b.rms:.2g}",
-            "order": "-" if np.isnan(b.order) else f"{b.order:.2f}",
-        }
-        for b in bulk.itertuples()
-    ]
-    return pd.DataFrame(rows)
-
-
 def tables(outcome: Outcome, bulk: pd.DataFrame | None) -> dict[str, pd.DataFrame]:
     """All tables by title; `bulk` is that of a bulk scene, if it ran."""
+    errors = [f"{q}_{kind}" for q in QUANTITIES for kind in ("error", "rms")]
     found = {
-        f"{outcome.case.case.title}: errors (max and rms over speeds and phases)": error_table(outcome.rows),
-        "cheapest setting for an error of e_n (stepping time per impact)": cheapest_table(outcome.models),
+        f"{outcome.case.case.title}: errors (max and rms over speeds and phases)": outcome.rows[
+            ["model", "steps", *errors, "ns_per_impact"]
+        ],
+        "coarsest steps for an error of e_n, and their stepping time per impact": outcome.models,
     }
     if bulk is not None:
-        found[f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy"] = bulk_table(bulk)
+        found[f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy"] = bulk
     return found

@@ -3,7 +3,6 @@
 
 import tempfile
 import tomllib
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,8 +17,8 @@ from ..impacts import store
 from ..scenes import results as scene_store
 from ..scenes import run as scenes
 from .models import engine
+from .runner import Progress, silent
 
-Progress = Callable[[str], None]
 CASE = "case.toml"  # in the scratch folder
 
 
@@ -37,7 +36,7 @@ class Rerun:
         return not any(self.differences.values())
 
 
-def rerun(path: Path, progress: Progress = lambda text: None) -> Rerun:
+def rerun(path: Path, progress: Progress = silent) -> Rerun:
     """Run what `path`, results.h5 of impacts or of a scene, was made by, in a scratch folder, and compare.
 
     Raises CaseError for a file that is none, EngineError.

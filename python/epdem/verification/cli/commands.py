@@ -19,10 +19,8 @@ from ...cli.options import (
     Formats,
     Laws,
     Out,
-    Replace,
     formats,
     print_files,
-    refuse_options,
 )
 from ...errors import CaseError
 from ..tables import frame_table
@@ -90,20 +88,16 @@ def crosscheck(
         raise CaseError(f"--out {out}: two of the cases have one file name and would share a folder; rename one")
     for path in cases:
         load(path)  # a mistake in the last one is not said after minutes with the first
-    results = []
+    documents, shown, passed = [], [], True
     with status() as progress:
         for path, folder in zip(cases, folders, strict=True):
-            found = check(path, engines=engine or [], law=law, out=folder, fresh=fresh, force=force, progress=progress)
-            results.append(found)
-            of_crosscheck(found)
-    documents, shown = [], []
-    for c in results:
-        about = {"case": c.outcome.case.name, "passed": c.passed, "absent": c.absent, "notes": c.notes}
-        documents.append(about | {"rows": c.table})
-        shown += crosscheck_tables(c.outcome.case.case.title, c.table)
-        shown += [f"{name} has a law and a theory of its own: {note}" for name, note in c.notes.items()]
-        shown += [*_absent(c.absent), f"page, figure and data: {c.outcome.folder}/report.html"]
-    passed = all(c.passed for c in results)
+            c = check(path, engines=engine or [], law=law, out=folder, fresh=fresh, force=force, progress=progress)
+            about = {"case": c.outcome.case.name, "passed": c.passed, "absent": c.absent, "notes": c.notes}
+            documents.append(about | {"rows": c.table})
+            shown += crosscheck_tables(c.outcome.case.case.title, c.table)
+            shown += [f"{name} has a law and a theory of its own: {note}" for name, note in c.notes.items()]
+            shown += [*_absent(c.absent), f"page, figure and data: {of_crosscheck(c)}"]
+            passed &= c.passed
     raise _answer(documents[0] if len(documents) == 1 else documents, shown, as_json, passed)
 
 
@@ -153,32 +147,22 @@ def stability(
     steps: Annotated[
         int | None, typer.Option(min=1000, help="steps of the drift by repeated bounces (default: 1e9)")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts; its page is beside it, as .html")
-    ] = None,
-    force: Replace = False,
+    out: Out = None,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ...base.files import refuse_existing
+    from ...base.files import claim, results_folder
     from ...base.tables import write_csv
     from .. import stability as suite
+    from ..pages import of_stability
     from ..stability.suite import tables
 
-    if out:
-        if out.suffix == ".html":
-            raise CaseError(f"--out {out}: the page beside the table has this name; name the table {out.stem}.csv")
-        refuse_existing(out, force=force)
-        refuse_existing(out.with_suffix(".html"), force=force)
-    else:
-        refuse_options("stability", "it goes with --out", force=force)
-    with status() as progress:
+    folder = results_folder(out, "stability")
+    with claim(folder, force=force, files=["stability.csv"]), status() as progress:
         found = suite.run(engine or [], law or [], groups=group, every=every, steps=steps, progress=progress)
-    if out:
-        from ..pages import of_stability
-
-        write_csv(out, found.verdicts)
-        of_stability(found, out.with_suffix(".html"))
+        write_csv(folder / "stability.csv", found.verdicts)
+        of_stability(found, folder)
     document = {"passed": found.passed, "rows": found.verdicts, "roundoff": found.roundoff, "bulk": found.bulk}
     failed = found.verdicts[found.verdicts["status"] == "failed"].itertuples()
     shown: list[Table | Text] = [frame_table(title, frame) for title, frame in tables(found).items()]
@@ -243,7 +227,7 @@ def data(
     as_json: AsJson = False,
 ) -> None:
     """Run all laws against measured impacts with nothing fitted (default engines: embedded and liggghts)."""
-    from ..measured_data import shown, validate
+    from ..measured_data import validate
     from ..pages import of_validation
     from ..runner import STUDIES
 
@@ -253,7 +237,7 @@ def data(
         )
         page = of_validation(found)
     document = {"rows": found.points, "summary": found.summary, "absent": found.absent, "page": page}
-    table = frame_table(STUDIES["data"].title, shown(found.summary))
+    table = frame_table(STUDIES["data"].title, found.summary)
     raise _answer(document, [table, *_absent(found.absent), f"see {page}"], as_json)
 
 
