@@ -192,7 +192,7 @@ def test_a_negative_poisson_ratio_is_refused_for_liggghts_only():
     data = read_toml(CASES / "steel_wall.toml")
     data["materials"]["steel"]["poisson_ratio"] = -0.2
     x = experiment(parse(data, "test"))
-    with pytest.raises(CaseError, match="use --engine embedded"):
+    with pytest.raises(CaseError, match="use --engine lammps"):
         Liggghts().deck(plan(x, predict(x)))
 
 

@@ -21,6 +21,7 @@ from ..jobs.engine import Engine, Report, check_law, silent
 from ..jobs.stage import Tables
 from ..scenes.columns import named_rows
 from ..scenes.engine import Resumed
+from ..scenes.model import Model
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
 from . import log
@@ -55,8 +56,8 @@ class Host(Engine[Any, Any]):
         return str(self.launcher.version())
 
     @abstractmethod
-    def deck(self, plan: Plan) -> Any:
-        """The deck of a plan. Raises CaseError for what the program cannot do."""
+    def deck(self, plan: Plan, model: Model | None = None) -> Any:
+        """The deck of a plan; model: in place of its own. Raises CaseError for what the program cannot do."""
 
     def data(self, deck: Any) -> dict[str, str]:
         """The data files of a deck of impacts by name."""

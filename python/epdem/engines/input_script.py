@@ -9,9 +9,10 @@ import numpy as np
 
 from ..base.rendering import number
 from ..errors import CaseError
-from ..impacts.experiment import Body
 from ..impacts.plan import Plan, room, side_by_side
+from ..laws.strengths import ADHESION
 from ..scenes.limits import PressedBed
+from ..scenes.model import Model, Type
 from ..scenes.plan import PhaseSteps, ScenePlan
 from . import log
 
@@ -68,13 +69,38 @@ def finite(value: float) -> float:
     return RIGID if math.isinf(value) else value
 
 
-def atom_types(plan: Plan) -> list[tuple[Body, float]]:
-    """The distinct (body, strength) of the plan: LIGGGHTS's atom types, the moving body first."""
-    x = plan.experiment
-    types = [(x.body, x.law.strengths[0])]
-    if x.target.material != x.body.material:
-        types.append((x.target, x.law.strengths[1]))
-    return types
+def impact_model(plan: Plan) -> Model:
+    """The contact model of impacts: one or two types, the moving body first."""
+    x, oblique = plan.experiment, plan.experiment.oblique
+    bodies = [x.body] if x.target.material == x.body.material else [x.body, x.target]
+    types = tuple(
+        Type(
+            b.material,
+            b.material,
+            strength,
+            b.young_modulus,
+            b.poisson_ratio,
+            b.density if b.density < math.inf else 1.0,
+        )
+        for b, strength in zip(bodies, x.law.strengths, strict=False)
+    )
+
+    def of_pairs(value: float) -> tuple[tuple[float, ...], ...]:
+        return ((value,) * len(types),) * len(types)
+
+    return Model(
+        law=x.law.name,
+        parameters=x.law.parameters,
+        types=types,
+        wall_types={},
+        friction=of_pairs(oblique.friction if oblique else 0.0),
+        tangential=oblique.tangential if oblique else "history",
+        viscous=None if x.viscous_restitution is None else of_pairs(x.viscous_restitution),
+        tangential_restitution=None,
+        rolling=None,
+        cohesion=None,
+        adhesion=of_pairs(x.law.parameters[ADHESION]) if x.law.adheres else (),
+    )
 
 
 @dataclass(frozen=True)

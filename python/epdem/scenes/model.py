@@ -18,11 +18,14 @@ WALL = "wall"
 
 @dataclass(frozen=True)
 class Type:
-    """A material, or walls where they have their own values; `strength` [Pa] is inf if it never yields."""
+    """A material, or walls where they have their own values; SI, `strength` is inf if it never yields."""
 
     name: str
     material: str
     strength: float
+    young_modulus: float
+    poisson_ratio: float
+    density: float
     wall: bool = False
 
 
@@ -97,7 +100,12 @@ class Model:
 def model(case: SceneCase) -> Model:
     """The contacts of a scene: only the types and sub-models that it uses. Raises CaseError."""
     strong, used, contact = strengths(case), _materials_used(case), case.contact
-    types = [Type(m, m, strong[m]) for m in used]
+
+    def type_of(name: str, material: str, *, wall: bool = False) -> Type:
+        x = case.materials[material]
+        return Type(name, material, strong[material], x.young_modulus, x.poisson_ratio, x.density, wall)
+
+    types = [type_of(m, m) for m in used]
     pairs_with_wall = any(WALL in p.between for p in contact.pairs)
     own_friction = contact.wall_friction is not None and contact.wall_friction != contact.friction
     walls = case.parts.wall_materials
@@ -105,7 +113,7 @@ def model(case: SceneCase) -> Model:
     for material in walls:
         wall_types[material] = 1 + used.index(material) if material in used else 0
         if material not in used or own_friction or pairs_with_wall:
-            types.append(Type(WALL if len(walls) == 1 else f"{WALL} of {material}", material, strong[material], True))
+            types.append(type_of(WALL if len(walls) == 1 else f"{WALL} of {material}", material, wall=True))
             wall_types[material] = len(types)
     wall_types[""] = wall_types[walls[0]] if walls else 1
     result = Model(

@@ -10,10 +10,10 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...errors import CaseError
-from ...impacts.experiment import Body
 from ...impacts.plan import Plan
 from ...scenes import placement
 from ...scenes.columns import columns_of_frames
+from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse, scene_head
 from ..input_script import StopCondition, default_skin, row_words, stop_condition, wall_id
@@ -48,17 +48,6 @@ class ImpactDeck:
     columns: str = "z vz fz"
     path: str = PATH
     end: str = END
-
-
-def contact(plan: Plan, body: Body, strength: float) -> str:
-    """LAW E nu PARAMETERS [options]: the material of a body and the coefficients of its contacts."""
-    x = plan.experiment
-    found = words.material(x.law.name, body.young_modulus, body.poisson_ratio, strength, x.law.parameters)
-    if x.oblique:
-        found += f" tangential {x.oblique.tangential} {decks.number(x.oblique.friction)}"
-    if x.viscous_restitution is not None:
-        found += f" restitution {decks.number(x.viscous_restitution)}"
-    return found
 
 
 def check(p: ScenePlan) -> None:
@@ -158,7 +147,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
 def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LAMMPS cannot do."""
     check(p)
-    types = range(1, len(p.model.types) + 1)
+    m, types = p.model, range(1, len(p.model.types) + 1)
     cut = p.case.numerics.processors
     return SceneDeck(
         plan=p,
@@ -167,8 +156,8 @@ def deck(p: ScenePlan) -> SceneDeck:
         processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         skin=p.case.numerics.skin or default_skin(p),
         settings=" energies" * (p.output.energy or p.contacts > 0) + " strain",
-        materials=tuple((i, words.of_type(p, i), words.options(p, i, i)) for i in types),
-        pairs=tuple((i, j, words.options(p, i, j)) for i, j in combinations(types, 2) if _is_special(p, i, j)),
+        materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
+        pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),
         walls=(*(plane(p, w) for w in p.scene.planes), *meshes(p)),
         loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
@@ -181,10 +170,10 @@ def deck(p: ScenePlan) -> SceneDeck:
     )
 
 
-def _is_special(p: ScenePlan, i: int, j: int) -> bool:
+def _is_special(m: Model, i: int, j: int) -> bool:
     """Whether two types have other coefficients than the mean of the like pairs."""
-    own = words.options(p, i, j)
-    return own != words.options(p, i, i) or own != words.options(p, j, j)
+    own = words.options(m, i, j)
+    return own != words.options(m, i, i) or own != words.options(m, j, j)
 
 
 def contact_walls(p: ScenePlan) -> list[str]:
@@ -207,7 +196,7 @@ def _fills(p: ScenePlan, phase: str) -> list[tuple[str, str, str]]:
 
 def _data(p: ScenePlan, phase: str) -> str:
     rows = [*placement.moving_spheres(p, phase), *placement.later_bodies(p, phase)]
-    density = [0.0, *(p.case.materials[t.material].density for t in p.model.types)]
+    density = [0.0, *(t.density for t in p.model.types)]
     atoms, velocities = [], []
     for n, (x, y, z, radius, kind, *motion, _) in enumerate(rows, 1):
         numbers = " ".join(map(decks.number, (2 * radius, density[int(kind)], x, y, z)))

@@ -9,11 +9,13 @@ from ...base.processes import most_ranks
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
+from ...scenes.model import Model
 from ...theory.sources import Source
 from ..host import Host, impact_head
-from ..input_script import atom_types
+from ..input_script import impact_model
 from . import deck, launcher, resume, tables
-from .deck import ImpactDeck, contact
+from .deck import ImpactDeck
+from .words import of_type, options
 
 
 class Lammps(Host):
@@ -45,19 +47,20 @@ class Lammps(Host):
         plugin = paths.native("lammps/epdemplugin.so")
         return [plugin] if plugin else []
 
-    def deck(self, plan: Plan) -> ImpactDeck:
+    def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what the plugin cannot do."""
-        x, types = plan.experiment, atom_types(plan)
+        x, m = plan.experiment, model or impact_model(plan)
         check_features(self, x)
         wall = math.isinf(x.target.radius)
+        contacts = tuple(f"{of_type(m, i)} {options(m, i, i)}".rstrip() for i in range(1, len(m.types) + 1))
         return ImpactDeck(
             plan=plan,
             head=impact_head(plan),
             data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius),
-            types=tuple(body.material for body, _ in types),
-            pairs=tuple(contact(plan, body, strength) for body, strength in types),
-            wall=contact(plan, *types[-1]) if wall else None,
+            types=tuple(t.material for t in m.types),
+            pairs=contacts,
+            wall=contacts[-1] if wall else None,
             oblique=x.oblique is not None,
             columns="z vz fz" if wall or not x.oblique else "x z vx vz fx fz",
         )

@@ -44,13 +44,13 @@ def contact(p: ScenePlan, name: str) -> str:
     """Material and options of the contacts with a wall. Raises CaseError if they differ between types of spheres."""
     wall = p.wall_types[name]
     spheres = [i for i, t in enumerate(p.model.types, 1) if not t.wall]
-    found = {words.options(p, i, wall) for i in spheres}
+    found = {words.options(p.model, i, wall) for i in spheres}
     if len(found) > 1:
         raise CaseError(
             f"contact.pairs: a wall in LAMMPS has one contact with all spheres, wall {name} has {len(found)}; give the "
             f"wall the same friction and restitution with all materials, or {LIGGGHTS}"
         )
-    return f"{words.of_type(p, wall)} {found.pop()}".rstrip()
+    return f"{words.of_type(p.model, wall)} {found.pop()}".rstrip()
 
 
 def plane(p: ScenePlan, w: PlaneWall) -> DeckWall:

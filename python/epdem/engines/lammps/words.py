@@ -1,34 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Words of pair_coeff and walls: LAW E nu PARAMETERS and the options of a contact."""
 
-from collections.abc import Mapping
-
 from ...base.declarations import declarations
 from ...base.rendering import number
 from ...laws.strengths import ADHESION
-from ...scenes.plan import ScenePlan
+from ...scenes.model import Model
 from ..input_script import finite
 
 
-def material(law: str, E: float, nu: float, strength: float, given: Mapping[str, float]) -> str:
-    """LAW E nu PARAMETERS of a body [Pa]; given: the other parameters of the law, by name."""
-    declared = declarations()[law]
-    values = {**given, **({declared.strength: finite(strength)} if declared.strength else {})}
-    words = [law, *map(number, (finite(E), nu)), *(number(values[p.name]) for p in declared.parameters)]
-    return " ".join(words)
+def of_type(m: Model, i: int) -> str:
+    """The material of type i, from 1: LAW E nu PARAMETERS, SI."""
+    t, declared = m.types[i - 1], declarations()[m.law]
+    values = m.parameters | ({declared.strength: finite(t.strength)} if declared.strength else {})
+    values |= {ADHESION: m.adhesion[i - 1][i - 1]} if m.adheres else {}
+    numbers = (finite(t.young_modulus), t.poisson_ratio, *(values[p.name] for p in declared.parameters))
+    return " ".join([m.law, *map(number, numbers)])
 
 
-def of_type(p: ScenePlan, i: int) -> str:
-    """The material of type i, from 1, of a scene."""
-    t, m = p.model.types[i - 1], p.model
-    x = p.case.materials[t.material]
-    given = m.parameters | ({ADHESION: m.adhesion[i - 1][i - 1]} if m.adheres else {})
-    return material(m.law, x.young_modulus, x.poisson_ratio, t.strength, given)
-
-
-def options(p: ScenePlan, i: int, j: int) -> str:
+def options(m: Model, i: int, j: int) -> str:
     """The options of contacts of types i and j, from 1; "" without any."""
-    m, words = p.model, []
+    words = []
     if m.sliding:
         words += ["tangential", m.tangential, number(m.friction[i - 1][j - 1])]
     if m.viscous is not None:

@@ -16,10 +16,9 @@ from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..host import scene_head
-from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
-from .macros import ContactWords
+from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words, wall_id
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
-from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, wear, work_of_adhesion
+from .properties import HARD, SOFT, Property, of_model, tangential, wear
 from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes, table
 
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -31,6 +30,44 @@ WORKS = {  # what dumps call the works and energies of a sphere
 PATH = "path.bin"  # dump of impacts
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 LEAST_SPAN = 1e-4  # of all coordinates of a mesh [m]
+
+
+@dataclass(frozen=True)
+class ContactWords:
+    """Materials and contact model of pairs and walls. hard, soft: whether a modulus is beyond LIGGGHTS's limits.
+
+    has_history: whether contacts have a memory. settings: behind everything else of a pair or wall line.
+    """
+
+    hard: bool
+    soft: bool
+    has_history: bool
+    properties: tuple[Property, ...]
+    model: str
+    tangential: str
+    cohesion: str | None
+    rolling_friction: str | None
+    settings: tuple[str, ...]
+
+
+def contact_words(m: Model, properties: Sequence[Property] = (), recorded: Sequence[str] = ()) -> ContactWords:
+    """A contact model in words of LIGGGHTS. properties: beside those of the model; recorded: settings of what a scene
+    records. Raises CaseError."""
+    moduli = [finite(t.young_modulus) for t in m.types]
+    dashpot = ["viscous on"] * (m.viscous is not None)
+    if m.viscous is not None and m.sliding and m.tangential_restitution is None:
+        dashpot.append("tangential_damping off")  # a dashpot along the normal alone
+    return ContactWords(
+        hard=max(moduli) > HARD,
+        soft=min(moduli) < SOFT,
+        has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
+        properties=(*of_model(m), *properties),
+        model=f"ep/{m.law}",
+        tangential=tangential(m),
+        cohesion="sjkr" if m.cohesion else None,
+        rolling_friction=m.rolling.model if m.rolling else None,
+        settings=(*dashpot, *recorded, *["compaction on"] * m.compaction),
+    )
 
 
 @dataclass(frozen=True)
@@ -46,48 +83,6 @@ class ImpactDeck:
     oblique: bool
     wall_type: int | None
     path: str
-
-
-def _properties(p: ScenePlan) -> tuple[Property, ...]:
-    m, n = p.model, len(p.model.types)
-    materials = [p.case.materials[t.material] for t in m.types]
-    for t, x in zip(m.types, materials, strict=True):
-        if x.poisson_ratio < 0:
-            raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
-    properties = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
-    properties += strength(m.law, [t.strength for t in m.types])
-    properties += ratios(m.law, m.ratios())
-    if m.sliding:
-        properties.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
-    if m.viscous is not None:
-        values = [e_n for row in m.viscous for e_n in row]
-        same = values[0] if len({*values}) == 1 else values
-        properties.append(per_pair("coefficientRestitution", n, same, "-", "of impacts that do not yield"))
-    elif m.tangential_restitution is not None:
-        note = "of the tangential dashpot only"
-        properties.append(per_pair("coefficientRestitution", n, m.tangential_restitution, "-", note))
-    if m.rolling:
-        properties.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
-        if m.rolling.damping is not None:
-            properties.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
-    if m.adheres:
-        properties.append(work_of_adhesion(n, [x for row in m.adhesion for x in row]))
-    if m.cohesion:
-        properties.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
-    return (*properties, *wear(p))
-
-
-def _settings(p: ScenePlan) -> tuple[str, ...]:
-    """Settings of pair and walls; a dashpot along the normal alone needs the tangential one switched off."""
-    m = p.model
-    wanted = {
-        "viscous on": m.viscous is not None,
-        "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": bool(p.works),
-        "computeContactStrain on": True,
-        "compaction on": m.compaction,
-    }
-    return tuple(setting for setting, needed in wanted.items() if needed)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
@@ -212,23 +207,12 @@ def deck(p: ScenePlan) -> SceneDeck:
     _refuse_meshes(p)
     _refuse_skin(p)
     _refuse_restarts(p)
-    m = p.model
-    moduli = [p.case.materials[t.material].young_modulus for t in m.types]
+    m, recorded = p.model, ["computePlasticWork on"] * bool(p.works) + ["computeContactStrain on"]
     cut, commands = p.case.numerics.processors, phases(p)
     return SceneDeck(
         plan=p,
         head=scene_head(p),
-        contact=ContactWords(
-            hard=max(moduli) > HARD,
-            soft=min(moduli) < SOFT,
-            has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
-            properties=_properties(p),
-            model=f"ep/{m.law}",
-            tangential=tangential(m.tangential if m.sliding else None),
-            cohesion="sjkr" if m.cohesion else None,
-            rolling_friction=m.rolling.model if m.rolling else None,
-            settings=_settings(p),
-        ),
+        contact=contact_words(m, wear(p), recorded),
         boundary="p p f" if p.scene.periodic else "f f f",
         skin=p.case.numerics.skin or default_skin(p),
         own_skin=p.case.numerics.skin is not None,

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import atan
 
-from ...base.declarations import Declaration, declarations
-from ...case.fields import NODES, Tangential
+from ...base.declarations import declarations
+from ...scenes.model import Model
 
 
 @dataclass(frozen=True)
@@ -63,40 +63,37 @@ class ContactClasses:
     native: bool = False
 
 
-def material(
-    name: str,
-    law: str,
-    parameters: Mapping[str, float],
-    *,
-    strength: float,
-    young_modulus: float,
-    poisson_ratio: float,
-    density: float,
-    friction: float,
-) -> DeckMaterial:
-    """EpMat of a body. parameters: of the law, by their names; strength: of the body [Pa], inf: it never yields."""
-    declared = declarations()[law]
-    values = {"young": young_modulus, "poisson": poisson_ratio, "density": density, "frictionAngle": atan(friction)}
-    given = {**parameters} | ({declared.strength: strength} if declared.strength else {})
-    return DeckMaterial(name, values | _of_bodies(declared, given))
+def materials(m: Model) -> tuple[DeckMaterial, ...]:
+    """EpMat of each type, without the parameters of the law that have their default."""
+    declared, found = declarations()[m.law], []
+    for t in m.types:
+        given = m.parameters | ({declared.strength: t.strength} if declared.strength else {})
+        of_law = {
+            p.property: given[p.name] for p in declared.parameters if not p.of_pair and given[p.name] != p.default
+        }
+        elastic = {"young": t.young_modulus, "poisson": t.poisson_ratio, "density": t.density}
+        found.append(DeckMaterial(t.name, elastic | of_law))
+    return tuple(found)
 
 
-def _of_bodies(declared: Declaration, given: Mapping[str, float]) -> dict[str, float]:
-    return {
-        p.property: given[p.name]
-        for p in declared.parameters
-        if not p.of_pair and p.name in given and (given[p.name] != p.default or p.default is None)
-    }
+def functors(m: Model, shapes: Iterable[str], **settings: object) -> Functors:
+    """The functors of a contact model. shapes: what spheres touch; settings: of the law's functor.
 
-
-def title(law: str) -> str:
-    """The C++ name of a law: thornton_ning -> ThorntonNing."""
-    return law.title().replace("_", "")
-
-
-def settings(tangential: Tangential | None, **more: object) -> dict[str, object]:
-    """Settings of the law's functor; tangential: None without friction."""
-    return ({"tangential": repr(tangential)} if tangential and NODES[tangential] else {}) | more
+    Values of pairs as in LIGGGHTS: the restitution of [viscous] belongs to both dashpots.
+    """
+    pairs = [of_pairs("frictAngle", [[atan(mu) for mu in row] for row in m.friction])]
+    pairs += [of_pairs("en", m.viscous)] if m.viscous else []
+    if m.tangential_restitution is not None:
+        pairs.append(of_pairs("es", m.viscous) if m.viscous else PairValue("es", m.tangential_restitution))
+    pairs += [PairValue("rollingFriction", m.rolling.coefficient)] if m.rolling else []
+    pairs += [PairValue("cohesionEnergyDensity", m.cohesion)] if m.cohesion else []
+    pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
+    models: dict[str, object] = {"tangential": repr(m.tangential)} if m.nodes else {}
+    models |= {"rolling": repr(m.rolling.model)} if m.rolling else {}
+    models |= {"cohesion": repr("sjkr")} if m.cohesion else {}
+    models |= {"compaction": "True"} if m.compaction else {}
+    title = m.law.title().replace("_", "")  # thornton_ning -> ThorntonNing
+    return Functors(title, tuple(shapes), tuple(pairs), models | settings)
 
 
 def of_pairs(name: str, rows: Iterable[Iterable[float]]) -> PairValue:

@@ -3,8 +3,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations_with_replacement
-from math import atan, isinf
+from math import isinf
 
 import numpy as np
 
@@ -14,8 +13,7 @@ from ...impacts.plan import Plan, side_by_side
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import refuse, scene_head
-from . import classes as words
-from .classes import BodyTable, ContactClasses, DeckMaterial, Functors, PairValue, of_pairs
+from .classes import BodyTable, ContactClasses, functors, materials
 from .scene_parts import (
     EDGES,
     HEAD,
@@ -34,7 +32,6 @@ from .scene_parts import (
 )
 from .scene_parts import files as files_of_parts
 
-Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
@@ -108,46 +105,6 @@ def notes(p: ScenePlan) -> list[str]:
     return [*found, EDGES] if any(not is_endless(p, name) for name in p.scene.meshes) else found
 
 
-def _materials(p: ScenePlan, friction: Square) -> tuple[DeckMaterial, ...]:
-    materials, m = [], p.model
-    for i, t in enumerate(m.types):
-        x = p.case.materials[t.material]
-        values = {
-            "young_modulus": x.young_modulus,
-            "poisson_ratio": x.poisson_ratio,
-            "density": x.density,
-            "friction": friction[i][i],
-        }
-        materials.append(words.material(t.name, m.law, m.parameters, strength=t.strength, **values))
-    return tuple(materials)
-
-
-def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
-    """(type, type, friction angle [rad]) of all pairs, from 0, unless each has YADE's own value, the smaller one."""
-    pairs = list(combinations_with_replacement(range(len(friction)), 2))
-    if all(friction[a][b] == min(friction[a][a], friction[b][b]) for a, b in pairs):
-        return ()
-    return tuple((a, b, atan(friction[a][b])) for a, b in pairs)
-
-
-def _functors(p: ScenePlan, friction: Square) -> Functors:
-    """Values of pairs as in LIGGGHTS: the restitution of [viscous] belongs to both dashpots."""
-    m = p.model
-    pairs = [PairValue("frictAngle", None, pairs) for pairs in [_pairs(friction)] if pairs]
-    pairs += [of_pairs("en", m.viscous)] if m.viscous else []
-    if m.tangential_restitution is not None:
-        pairs.append(of_pairs("es", m.viscous) if m.viscous else PairValue("es", m.tangential_restitution))
-    pairs += [PairValue("rollingFriction", m.rolling.coefficient)] if m.rolling else []
-    pairs += [PairValue("cohesionEnergyDensity", m.cohesion)] if m.cohesion else []
-    pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
-    models = {"rolling": repr(m.rolling.model)} if m.rolling else {}
-    models |= {"cohesion": repr("sjkr")} if m.cohesion else {}
-    models |= {"compaction": "True"} if m.compaction else {}
-    more = words.settings(m.tangential if m.sliding else None, **models, recordStrain=True)
-    shapes = {"Facet" if w.file else "Wall" for w in walls(p).values()}
-    return Functors(words.title(m.law), ("Sphere", *sorted(shapes)), tuple(pairs), more)
-
-
 @dataclass(frozen=True)
 class DeckPhase:
     """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it, steps after
@@ -214,7 +171,8 @@ def _placed(p: ScenePlan) -> bool:
 def deck(p: ScenePlan) -> SceneDeck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     check(p)
-    m, friction, phases, every_wall = p.model, p.model.friction, tuple(_phases(p)), walls(p)
+    m, phases, every_wall = p.model, tuple(_phases(p)), walls(p)
+    shapes = ("Sphere", *sorted({"Facet" if w.file else "Wall" for w in every_wall.values()}))
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
@@ -222,7 +180,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     return SceneDeck(
         plan=p,
         head=scene_head(p),
-        contact=ContactClasses(m.law, _functors(p, friction), _materials(p, friction)),
+        contact=ContactClasses(m.law, functors(m, shapes, recordStrain=True), materials(m)),
         cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
         walls=tuple(wall for name, wall in every_wall.items() if name in there),
         late=tuple(wall for name, wall in every_wall.items() if name not in there),

@@ -5,7 +5,7 @@ A deck has a copy of the module epdem_yade. Without the module a deck of normal 
 """
 
 import re
-from math import isfinite, isinf
+from math import isinf
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +13,16 @@ from ...base.declarations import declarations, library_path
 from ...base.processes import captured_output
 from ...errors import CaseError
 from ...impacts.engine import check_features
-from ...impacts.experiment import Body, Experiment
+from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
+from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host, impact_head
-from . import classes, deck, launcher, tables
-from .classes import BodyTable, ContactClasses, DeckMaterial, Functors, PairValue
+from ..input_script import impact_model
+from . import deck, launcher, tables
+from .classes import BodyTable, ContactClasses, DeckMaterial, functors, materials
 from .deck import ImpactDeck, axes, body_tables
 from .launcher import command, environment, module_version, write_deck_modules
 from .scene_parts import table_text
@@ -83,34 +85,6 @@ class Yade(Host):
     def parts(self) -> list[Path]:
         return [launcher.module() or library_path()]
 
-    def material(self, x: Experiment, body: Body, strength: float) -> DeckMaterial:
-        """The material of one body; with the C library its mass alone counts."""
-        density = body.density if isfinite(body.density) else 1.0  # of a rigid wall: not used
-        if not self.classes:
-            return DeckMaterial(body.material, {"density": density})
-        return classes.material(
-            body.material,
-            x.law.name,
-            x.law.parameters,
-            strength=strength,
-            young_modulus=body.young_modulus,
-            poisson_ratio=body.poisson_ratio,
-            density=density,
-            friction=x.oblique.friction if x.oblique else 0.0,
-        )
-
-    def functors(self, x: Experiment) -> Functors | None:
-        """Input of the functors of epdem_yade; None without the module."""
-        if not self.classes:
-            return None
-        declared = declarations()[x.law.name].parameters
-        given = {p.property: x.law.parameters[p.name] for p in declared if p.of_pair}
-        given |= {"en": x.viscous_restitution} if x.viscous_restitution is not None else {}
-        tangential = x.oblique.tangential if x.oblique else None
-        pairs = tuple(PairValue(name, value) for name, value in given.items())
-        shape = "Wall" if isinf(x.target.radius) else "Sphere"
-        return Functors(classes.title(x.law.name), (shape,), pairs, classes.settings(tangential))
-
     def of_pair(self, x: Experiment) -> dict[str, float]:
         """Numbers of the pair for the C library; none with the module or YADE's own law."""
         if self.classes or self.own_law:
@@ -119,15 +93,14 @@ class Yade(Host):
         values = {"E_star": x.E_star, "R_star": x.R_star, **given, "share": x.law.share}
         return {name: value for name, value in values.items() if value is not None}
 
-    def deck(self, plan: Plan) -> ImpactDeck:
+    def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
-        x, wall = plan.experiment, isinf(plan.experiment.target.radius)
+        x, m, wall = plan.experiment, model or impact_model(plan), isinf(plan.experiment.target.radius)
         self.require_module(plan)
         check_features(self, x)
-        materials = {
-            x.target.material: self.material(x, x.target, x.law.strengths[1]),
-            x.body.material: self.material(x, x.body, x.law.strengths[0]),
-        }
+        of_types, with_classes = materials(m), functors(m, ("Wall" if wall else "Sphere",))
+        if not self.classes:  # with the C library the mass alone counts
+            of_types = tuple(DeckMaterial(t.name, {"density": t.density}) for t in m.types)
         bodies = [BodyTable("body.data", x.body.radius, x.body.material)]
         if not wall:
             bodies.append(BodyTable("target.data", x.target.radius, x.target.material))
@@ -135,7 +108,7 @@ class Yade(Host):
             plan=plan,
             head=impact_head(plan),
             contact=ContactClasses(
-                x.law.name, self.functors(x), tuple(materials.values()), self.of_pair(x), native=self.own_law
+                m.law, with_classes if self.classes else None, of_types, self.of_pair(x), native=self.own_law
             ),
             rigid=x.target.rigid,
             anvil=None,

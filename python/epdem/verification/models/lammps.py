@@ -12,6 +12,7 @@ from ...engines.lammps.engine import Lammps
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent
+from ...scenes.model import Model
 from .theories import Mdr, OtherLaw
 
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above
@@ -29,7 +30,7 @@ class LammpsMdr(Lammps):
     def missing(self) -> str | None:
         return launcher.missing_program()
 
-    def deck(self, plan: Plan) -> ImpactDeck:
+    def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for cases outside mdr."""
         x = plan.experiment
         check_features(self, x)

@@ -9,9 +9,9 @@ from typing import Any
 from ...engines.yade.classes import DeckMaterial
 from ...engines.yade.deck import Anvil, ImpactDeck
 from ...engines.yade.engine import Yade
-from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Report, silent
+from ...scenes.model import Model
 from .theories import Luding, OtherLaw
 
 
@@ -32,25 +32,22 @@ class YadeLuding(Yade):
         path = super().run(job, folder, ranks=ranks, report=report)
         return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
-    def material(self, x: Experiment, body: Body, strength: float) -> DeckMaterial:
-        law, wall = Luding.of(x), math.isinf(x.target.radius)
-        phi_f = 2 * law.phi_f if wall else law.phi_f  # YADE multiplies it by 2 R*, here half that of the wall
+    def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:
+        x, deck, wall = plan.experiment, super().deck(plan, model), math.isinf(plan.experiment.target.radius)
+        law = Luding.of(x)
         values = {
-            "density": x.body.density if wall else body.density,
             "k1": law.k_1,
             "kp": law.k_p,
             "kc": 0.0,
             "ks": 0.0,
-            "PhiF": phi_f,
+            "PhiF": 2 * law.phi_f if wall else law.phi_f,  # YADE multiplies it by 2 R*, here half that of the wall
             "G0": 0.0,
             "frictionAngle": 0.0,
         }
-        return DeckMaterial(body.material, values)
-
-    def deck(self, plan: Plan) -> ImpactDeck:
-        x, deck = plan.experiment, super().deck(plan)
-        anvil = None
-        if deck.wall_material:
-            anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
-        contact = replace(deck.contact, law="Luding", functors=None)
+        materials = tuple(
+            DeckMaterial(m.name, {"density": x.body.density if wall else m.values["density"]} | values)
+            for m in deck.contact.materials
+        )
+        contact = replace(deck.contact, law="Luding", functors=None, materials=materials)
+        anvil = Anvil(x.body.radius, x.target.material, -x.body.radius) if wall else None
         return replace(deck, contact=contact, rigid=False, wall_material=None, anvil=anvil)

@@ -11,9 +11,9 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines import input_script
+from ...engines.host import Host
 from ...engines.liggghts import dump, launcher
 from ...engines.liggghts.engine import Liggghts
-from ...engines.liggghts.properties import per_pair, tangential
 from ...errors import EngineError
 from ...laws.library import Array
 from .prescribed import Loads, Motion, Touch, summary
@@ -26,6 +26,7 @@ class LiggghtsMotions:
     """LIGGGHTS with a law and a friction of ours. words: of `set` for place, velocity and spin of a sphere."""
 
     name = Liggghts.name
+    host: type[Host] = Liggghts
     laws: tuple[str, ...] | None = None
     features = Liggghts.features
     template, path, words = "verification/liggghts/motion.in.j2", "path.bin", SET
@@ -45,15 +46,9 @@ class LiggghtsMotions:
 
     def deck(self, touch: Touch, motion: Motion) -> Any:
         """The deck of a motion. Raises CaseError for what the engine cannot do."""
-        plain = Liggghts().deck(touch.plan(motion))
-        friction = per_pair("coefficientFriction", len(plain.types), touch.friction, "-")
-        contact = replace(
-            plain.contact,
-            has_history=True,
-            properties=(*plain.contact.properties, friction),
-            tangential=tangential(touch.tangential),
-        )
-        return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), contact=contact)
+        plan = touch.plan(motion)
+        plain: Any = self.host().deck(plan, touch.model(plan))
+        return replace(plain, head=replace(plain.head, summary=summary(touch, motion)))
 
     def read(self, path: Path, steps: int) -> Array:
         """Forces and torques of the start and of every step. Raises EngineError."""

@@ -7,7 +7,7 @@ bodies i and j.
 
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -17,11 +17,13 @@ import numpy.typing as npt
 from ...case.fields import NODES, Tangential
 from ...case.sizes import LARGEST_FILE
 from ...case.toml import text_of
+from ...engines.input_script import impact_model
 from ...errors import CaseError
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...laws.library import Array
+from ...scenes.model import Model
 
 WIDTHS = {"t": 1, "dt": 1} | {f"{name}_{side}": n for name, n in (("x", 3), ("v", 3), ("q", 4)) for side in "ij"}
 WIDTHS |= {f"{name}_{side}": 3 for name in ("omega", "F", "T") for side in "ij"}
@@ -51,6 +53,12 @@ class Touch:
         """Plan from which the decks of impacts are made."""
         x = self.experiment
         return Plan(x, motion.time_step, motion.steps, 1, x.speed[:1], np.zeros(1))
+
+    def model(self, plan: Plan) -> Model:
+        """The contact model of the experiment with this friction."""
+        m = impact_model(plan)
+        n = len(m.types)
+        return replace(m, friction=((self.friction,) * n,) * n, tangential=self.tangential)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Prescribed motions of two spheres in YADE: no integrator, every step sets both."""
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines.yade import launcher
-from ...engines.yade.classes import DeckMaterial, settings
 from ...engines.yade.deck import ImpactDeck
 from ...engines.yade.engine import Yade
 from ...errors import EngineError
@@ -49,15 +47,9 @@ class YadeMotions:
 
 def deck(touch: Touch, motion: Motion) -> ImpactDeck:
     """The deck of a motion. Raises CaseError for what YADE cannot do."""
-    plain = Yade().deck(touch.plan(motion))
-    friction = {"frictionAngle": math.atan(touch.friction)}
-    assert plain.contact.functors is not None  # `missing` says so
-    contact = replace(
-        plain.contact,
-        materials=tuple(DeckMaterial(m.name, {**m.values, **friction}) for m in plain.contact.materials),
-        functors=replace(plain.contact.functors, settings=settings(touch.tangential)),
-    )
-    return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), contact=contact, path="path.npy")
+    plan = touch.plan(motion)
+    plain = Yade().deck(plan, touch.model(plan))
+    return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), path="path.npy")
 
 
 def files(touch: Touch, motion: Motion) -> dict[str, str]:
