@@ -31,10 +31,8 @@ class Recorded(Embedded):
     def version(self):
         return self.release
 
-    def write(self, plan, folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "in.impact").write_text(f"# {plan.experiment.title}\n{self.deck}")
-        return [folder / "in.impact"]
+    def files(self, plan):
+        return {"in.impact": f"# {plan.experiment.title}\n{self.deck}"}
 
 
 @pytest.fixture

@@ -6,7 +6,6 @@ from ..base.rendering import with_reasons
 from ..errors import CaseError
 from ..impacts.engine import ImpactEngine, Trajectory
 from ..impacts.plan import Plan
-from ..jobs.stage import texts
 from ..scenes.engine import SceneEngine
 from ..scenes.plan import ScenePlan
 from .embedded import Embedded
@@ -41,7 +40,7 @@ def texts_with_reasons(name: str, job: Plan | ScenePlan) -> dict[str, str]:
     if name != DEFAULT_ENGINE:
         return {}
     with with_reasons():
-        return texts(engine(name), job) if isinstance(job, Plan) else texts(scene_engine(name), job)
+        return Liggghts().files(job)
 
 
 __all__ = [

@@ -9,13 +9,13 @@ from ..base.declarations import library_path
 from ..impacts import oblique
 from ..impacts.engine import Trajectory, check_features
 from ..impacts.plan import Plan
-from ..jobs.engine import Feature, Report, silent
+from ..jobs.engine import Engine, Feature, Report, silent
 from ..laws import library as claw
 from ..laws.library import ImpactNumbers
 from ..theory.sources import Source
 
 
-class Embedded:
+class Embedded(Engine[Plan, Trajectory]):
     """Impacts inside the C library, without any other program."""
 
     name = "embedded"
@@ -39,8 +39,8 @@ class Embedded:
         check_features(self, job.experiment)
         return []
 
-    def write(self, job: Plan, folder: Path) -> list[Path]:
-        return []  # nothing to run by hand
+    def files(self, job: Plan) -> dict[str, str]:
+        return {}  # nothing to run by hand
 
     def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory:
         x = job.experiment

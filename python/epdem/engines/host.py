@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from ..base import rendering as decks
-from ..base.files import stored_results, write_texts
+from ..base.files import stored_results
 from ..case import impact, scene
 from ..case.toml import error_context, read_toml
 from ..errors import CaseError, EngineError
@@ -64,7 +64,6 @@ class Host(Engine[Any, Any]):
         return {deck.data: data_text(deck.plan, len(deck.types))}
 
     def files(self, job: Plan | ScenePlan) -> dict[str, str]:
-        """The text of every file of a deck by its name. Raises CaseError."""
         if isinstance(job, ScenePlan):
             return dict(self.scene_deck.files(job))
         deck = self.deck(job)
@@ -81,9 +80,6 @@ class Host(Engine[Any, Any]):
             return self.check_scene(job)
         self.deck(job)
         return []
-
-    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        return write_texts(folder, self.files(job))
 
     def start(self, script: str, folder: Path, **how: Any) -> float:
         """Run a deck that is in `folder` to its end; seconds taken. Raises EngineError."""

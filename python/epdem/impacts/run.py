@@ -17,7 +17,7 @@ from ..case.plausibility import case_warnings
 from ..case.toml import LoadedCase, error_context, read_toml, text_of
 from ..errors import CaseError
 from ..jobs.engine import Feature, require
-from ..jobs.stage import Inputs, Stage, Tables, compute
+from ..jobs.stage import Inputs, Stage, Tables, compute, inputs
 from . import store
 from .comparison import compare, impacts_table
 from .engine import ImpactEngine, Trajectory, check_plan
@@ -60,7 +60,8 @@ def run_plan(
         tables = {"impacts": impacts_table(p, measure(p, path)), "paths": sample_impacts(p, path)}
         return tables, {f"seconds_{name}": seconds for name, seconds in path.seconds.items()}
 
-    return compute(tool, p, folder, read, version=version, facts=_facts(p), ranks=ranks, stored=stored)
+    now = inputs(tool, p, version=version, facts=_facts(p), ranks=ranks)
+    return compute(tool, p, folder, read, now, ranks=ranks, stored=stored)
 
 
 def _facts(p: Plan) -> object:

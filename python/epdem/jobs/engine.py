@@ -7,6 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Protocol, TypeVar
 
+from ..base.files import write_texts
 from ..errors import CaseError, EngineError
 from ..laws.strengths import find_law
 from ..theory.sources import Source
@@ -63,14 +64,22 @@ class Engine(Tool, Protocol[Job, Result]):
     def check(self, job: Job) -> list[str]:
         """Sentences on what the engine leaves out or replaces. Raises CaseError for a job that it cannot run."""
 
-    def write(self, job: Job, folder: Path) -> list[Path]:
-        """Write the deck and its data files into `folder`, where they run without epdem; their paths, the deck first.
+    def files(self, job: Job) -> dict[str, str]:
+        """The texts of the deck and its data files by their paths, the deck first.
 
         Raises CaseError for a job that the engine cannot run.
         """
 
+    def put(self, files: dict[str, str], folder: Path) -> list[Path]:
+        """Write the files of a deck into `folder`, where they run without epdem; their paths."""
+        return write_texts(folder, files)
+
+    def write(self, job: Job, folder: Path) -> list[Path]:
+        """Write the deck of a job into `folder`; the paths of its files. Raises CaseError."""
+        return self.put(self.files(job), folder)
+
     def run(self, job: Job, folder: Path, *, ranks: int = 1, report: Report = silent) -> Result:
-        """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
+        """Run the deck that is in `folder`. Raises EngineError with the end of the engine's log."""
 
 
 def require(*tools: Tool) -> None:

@@ -3,7 +3,6 @@
 
 import hashlib
 import re
-import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -63,30 +62,13 @@ def _file_hash(path: Path, changed: int, size: int) -> bytes:
     return path.name.encode() + hashlib.sha256(path.read_bytes()).digest()
 
 
-def texts(tool: Engine[Job, Result], job: Job, folder: Path | None = None) -> dict[str, str]:
-    """The texts of a job's files by their path, which are written into `folder` (None: nowhere). Raises CaseError."""
-    if folder is None:
-        with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
-            return texts(tool, job, Path(scratch))
-    written = [path for path in tool.write(job, folder) if path.suffix != ".so"]  # a copy of a compiled part
-    return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in written}
-
-
-def inputs(
-    tool: Engine[Job, Result],
-    job: Job,
-    *,
-    version: str,
-    facts: object = (),
-    ranks: int = 1,
-    folder: Path | None = None,
-) -> Inputs:
-    """Inputs of a job, whose files are written as by `texts`. Raises CaseError.
+def inputs(tool: Engine[Job, Result], job: Job, *, version: str, facts: object = (), ranks: int = 1) -> Inputs:
+    """Inputs of a job. Raises CaseError.
 
     version: of the engine. facts: numbers and names on which tables depend and that no file of the engine holds; they
     count by their repr.
     """
-    files = texts(tool, job, folder)
+    files = tool.files(job)
     read = sorted((name, without_comments(text)) for name, text in files.items())
     known = (FORMAT, read, facts, tool.name, version, parts_hash(tool), ranks)
     return Inputs(files, hashlib.sha256(repr(known).encode()).hexdigest())
@@ -97,24 +79,20 @@ def compute(
     job: Job,
     folder: Path,
     read: Callable[[Result], tuple[Tables, dict[str, float]]],
+    now: Inputs,
     *,
-    version: str,
-    facts: object = (),
     ranks: int = 1,
     report: Report = silent,
     stored: Stage | None = None,
-    given: Inputs | None = None,
 ) -> Stage:
-    """The `stored` stage if its inputs are those of the job, else one run in `folder`. Raises CaseError, EngineError.
+    """The `stored` stage if its inputs are those of the job, `now`, else one run in `folder`. Raises EngineError.
 
-    read: tables and times of the engine's result. version, facts: as of `inputs`, which may be `given`.
+    read: tables and times of the engine's result.
     """
-    if stored is not None:
-        now = given or inputs(tool, job, version=version, facts=facts, ranks=ranks)
-        if stored.inputs.key == now.key:
-            return replace(stored, inputs=now, reused=True)
+    if stored is not None and stored.inputs.key == now.key:
+        return replace(stored, inputs=now, reused=True)
     start = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
-    now = inputs(tool, job, version=version, facts=facts, ranks=ranks, folder=folder)
+    tool.put(now.files, folder)
     tables, seconds = read(tool.run(job, folder, ranks=ranks, report=report))
     return Stage(now, tables, seconds | {"seconds": time.perf_counter() - start})

@@ -8,7 +8,7 @@ from typing import Protocol
 from ..base.files import claim
 from ..errors import CaseError, EngineError
 from ..jobs.engine import Engine, Feature, Report, refuse_ranks
-from ..jobs.stage import Tables, texts
+from ..jobs.stage import Tables
 from .plan import ScenePlan
 
 
@@ -30,13 +30,14 @@ class SceneEngine(Engine[ScenePlan, Tables], Protocol):
 def files(engine: SceneEngine, p: ScenePlan) -> dict[str, str]:
     """The text of every file of a scene by its path in the folder. Raises CaseError for what the engine cannot do."""
     engine.check(p)
-    return texts(engine, p)
+    return engine.files(p)
 
 
 def write_deck(engine: SceneEngine, p: ScenePlan, folder: Path, *, force: bool = False) -> list[Path]:
     """Write the deck of a scene into `folder`, where `force` allows other files; its files. Raises CaseError."""
-    with claim(folder, force=force, files=files(engine, p)):
-        return engine.write(p, folder)
+    found = files(engine, p)
+    with claim(folder, force=force, files=found):
+        return engine.put(found, folder)
 
 
 def check_run(engine: SceneEngine, *, ranks: int = 1, resume: bool = False) -> None:

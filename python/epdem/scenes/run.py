@@ -89,7 +89,8 @@ def run_plan(
 ) -> dict[str, pd.DataFrame]:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
     engine.check(p)
-    return compute(engine, p, folder, _unchanged, version="", ranks=ranks, report=report).tables
+    now = inputs(engine, p, version="", ranks=ranks)
+    return compute(engine, p, folder, _unchanged, now, ranks=ranks, report=report).tables
 
 
 def _unchanged(tables: Tables) -> tuple[Tables, dict[str, float]]:
@@ -143,24 +144,15 @@ def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
 
 def _computed(work: _Work, place: ResultsFolder, old: results.SceneResults | None) -> SceneOutcome:
     """The outcome of stored tables if they belong to these inputs, else of a run."""
-    stored = None
+    stored, folder = None, place.folder
     if old and old.attributes.get("inputs") == work.inputs.key:
         stored = Stage(work.inputs, results.engine_tables(work.plan, old.tables), {})
     else:
         place.note(work.versions)
     stage = compute(
-        work.engine,
-        work.plan,
-        place.folder,
-        _unchanged,
-        version=work.version,
-        facts=_facts(work.plan),
-        ranks=work.ranks,
-        report=work.report,
-        stored=stored,
-        given=work.inputs,
+        work.engine, work.plan, folder, _unchanged, work.inputs, ranks=work.ranks, report=work.report, stored=stored
     )
-    return _finish(work, place.folder, stage, old if stored else None)
+    return _finish(work, folder, stage, old if stored else None)
 
 
 def _resumed(work: _Work, place: ResultsFolder) -> SceneOutcome:

@@ -24,7 +24,7 @@ from ..input_script import impact_model
 from . import deck, launcher, tables
 from .classes import BodyTable, ContactClasses, DeckMaterial, functors, materials
 from .deck import ImpactDeck, axes, body_tables
-from .launcher import command, environment, module_version, write_deck_modules
+from .launcher import command, copy_part, deck_modules, environment, module_version
 from .scene_parts import table_text
 
 
@@ -78,10 +78,6 @@ class Yade(Host):
             "liggghts"
         )
 
-    def check(self, job: Plan | ScenePlan) -> list[str]:
-        self.require_module(job)
-        return super().check(job)
-
     def parts(self) -> list[Path]:
         return [launcher.module() or library_path()]
 
@@ -121,6 +117,7 @@ class Yade(Host):
         )
 
     def check_scene(self, plan: ScenePlan) -> list[str]:
+        self.require_module(plan)
         super().check_scene(plan)
         return deck.notes(plan)
 
@@ -129,8 +126,10 @@ class Yade(Host):
         tables = [table_text(head, table.tolist()) for table in body_tables(deck.plan)]
         return dict(zip((b.data for b in deck.bodies), tables, strict=True))
 
-    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        self.require_module(job)
-        scene = isinstance(job, ScenePlan)
-        files = super().write(job, folder)
-        return files if self.own_law else files + write_deck_modules(folder, classes=self.classes, scene=scene)
+    def files(self, job: Plan | ScenePlan) -> dict[str, str]:
+        texts, scene = super().files(job), isinstance(job, ScenePlan)
+        return texts if self.own_law else texts | deck_modules(classes=self.classes, scene=scene)
+
+    def put(self, files: dict[str, str], folder: Path) -> list[Path]:
+        written = super().put(files, folder)
+        return written if self.own_law else [*written, copy_part(folder, classes=self.classes)]

@@ -4,14 +4,13 @@
 import hashlib
 import os
 import shutil
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ...base import paths
 from ...base.declarations import library_path
-from ...base.files import atomic, write_texts
+from ...base.files import atomic
 from ...base.processes import call
 from ...errors import EngineError
 
@@ -19,6 +18,7 @@ OUT = "out.yade"  # both streams
 INSTALL = "apt-get install yade"
 MODULE, PROGRAM = "epdem_yade.so", "epdem_yade.program"  # the module, and the path of the program that it is built for
 BUILD = "run 'make yade', or name one by EPDEM_YADE_MODULE"  # the module
+PACKAGE = "epdem/yade/deck_modules"  # of the modules of a deck
 MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 
 
@@ -64,29 +64,22 @@ def module_version() -> str:
     return f"epdem_yade {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}" if path else "no epdem_yade"
 
 
-def deck_modules(names: Sequence[str]) -> dict[str, str]:
-    """These Python modules of a deck by path beside the deck."""
+def deck_modules(*, classes: bool, scene: bool) -> dict[str, str]:
+    """The Python modules that a deck imports by their paths beside it: those of a scene; contacts without classes."""
+    names = ("recorder", "spheres") if scene else () if classes else ("contacts",)
     note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
-    files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note, "epdem/yade/deck_modules/__init__.py": note}
-    return files | {
-        f"epdem/yade/deck_modules/{name}.py": (MODULES / f"{name}.py").read_text(encoding="utf-8") for name in names
-    }
+    found = {f"{package}/__init__.py": note for package in ("epdem", "epdem/yade", PACKAGE) if names}
+    return found | {f"{PACKAGE}/{name}.py": (MODULES / f"{name}.py").read_text(encoding="utf-8") for name in names}
 
 
-def write_deck_modules(folder: Path, *, classes: bool, scene: bool = False) -> list[Path]:
-    """Write what a deck imports into its folder. Raises EngineError.
-
-    classes: a copy of epdem_yade, and the modules of a scene; else the contacts of impacts and a copy of the C library.
-    """
+def copy_part(folder: Path, *, classes: bool) -> Path:
+    """The copy beside a deck of epdem_yade, or of the C library, which the contacts of impacts call."""
     path = module() if classes else library_path()
     assert path is not None  # `classes` says so
-    copy = folder / (MODULE if classes else f"epdem/yade/deck_modules/{path.name}")
-    names = ("recorder", "spheres") if scene else () if classes else ("contacts",)
-    written = write_texts(folder, deck_modules(names)) if names else []
-    copy.parent.mkdir(parents=True, exist_ok=True)
+    copy = folder / (MODULE if classes else f"{PACKAGE}/{path.name}")
     with atomic(copy, sync=False) as temporary:
         shutil.copyfile(path, temporary)
-    return [*written, copy]
+    return copy
 
 
 def environment() -> dict[str, str]:

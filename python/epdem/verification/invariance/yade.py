@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.files import write_texts
 from ...engines.yade.deck import ImpactDeck
 from ...engines.yade.engine import Yade
-from ...engines.yade.launcher import run, write_deck_modules
+from ...engines.yade.launcher import run
 from ...engines.yade.scene_parts import table_text
 from ...errors import EngineError
 from .pairs import Pairs
@@ -31,9 +30,7 @@ def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     texts = {f"pairs{k}.py": text for k, text in enumerate(scripts(deck, pairs, variant))}
     tables = [np.hstack([side.place, side.velocity]).tolist() for side in pairs.ordered(variant == "swap")]
     data = {f"side{k}.data": table_text("# x y z v_x v_y v_z, SI", table) for k, table in enumerate(tables)}
-    write_texts(folder, texts | data)
-    if not deck.contact.native:
-        write_deck_modules(folder, classes=tool.classes)
+    tool.put(texts | data, folder)
     path = folder / deck.path
     path.unlink(missing_ok=True)
     for k, name in enumerate(texts):

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.files import write_texts
 from ...engines.yade import launcher
 from ...engines.yade.deck import ImpactDeck
 from ...engines.yade.engine import Yade
@@ -32,8 +31,7 @@ class YadeMotions:
         return None if Yade().classes else f"motions need the module epdem_yade, which is not built; {launcher.BUILD}"
 
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
-        write_texts(folder, files(touch, motion))
-        launcher.write_deck_modules(folder, classes=True)
+        Yade().put(files(touch, motion), folder)
         path = folder / "path.npy"
         path.unlink(missing_ok=True)
         launcher.run(SCRIPT, folder, seconds=300)
