@@ -170,11 +170,12 @@ def test_round_off_of_positions_stays_below_its_formula_and_above_a_tenth_of_it(
     assert table["double"].max() < 1e-14
 
 
-def test_overlap_at_the_start_stores_its_work(tmp_path):
+@pytest.mark.parametrize("name", ["embedded", *ENGINES])
+def test_overlap_at_the_start_stores_its_work(name, tmp_path):
     """Energy: a contact that starts at 2 alpha_max comes back faster than it was thrown, by the elastic share."""
     s = setting(BY_NAME["start_overlap_2"], "hertz")
     assert s.e_n == pytest.approx(np.sqrt(1 + 2**2.5), rel=1e-9)
-    assert ladder(s, Bench(Embedded(), tmp_path), [0.01])["error"].item() < 1e-3
+    assert ladder(s, Bench(engine(name), tmp_path), [0.01])["error"].item() < 1e-3
 
 
 @pytest.mark.liggghts
