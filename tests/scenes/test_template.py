@@ -80,7 +80,7 @@ def test_an_unknown_value_of_the_case_stops(own, tmp_path):
 
 
 def test_an_impact_case_brings_its_data_file(own, tmp_path):
-    own.write_text("read_data {{ deck.data }}\n")
+    own.write_text("read_data impact.data\n")
     files = write(own, STEEL, {}, tmp_path / "out")
     assert [f.name for f in files] == ["own.in", "impact.data"]
 
@@ -146,7 +146,7 @@ def test_a_template_may_take_in_its_neighbours_and_a_mistake_there_names_them(tm
 
 def test_the_command_ends_with_2_and_the_sentence(tmp_path):
     own = tmp_path / "own.in.j2"
-    own.write_text("{{ deck.head.title.nothing }}")
+    own.write_text("{{ deck.plan.experiment.title.nothing }}")
     words = [sys.executable, "-m", "epdem", "deck", "own.in.j2", "--case", str(STEEL), "--out", "out"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.startswith("epdem: own.in.j2:1: "), done.stderr

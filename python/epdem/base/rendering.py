@@ -4,7 +4,6 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeVar
 
@@ -20,13 +19,9 @@ def number(x: float | int) -> str:
     return repr(int(x)) if isinstance(x, int | np.integer) else repr(float(x))
 
 
-@dataclass(frozen=True)
-class Head:
-    """First lines of a deck: title and source of the case, summary of the job."""
-
-    title: str
-    source: str
-    summary: str
+def wall_id(name: str) -> str:
+    """The id of a wall's fix: a name that a user gives to a part must not be the id of another fix."""
+    return f"wall_{name}"
 
 
 REASON = "\x1f"  # between a line and its reason
@@ -56,6 +51,7 @@ def prepare(env: Prepared, *, reasons: bool = False) -> Prepared:
     env.globals["why"] = (lambda reason: REASON + reason) if reasons else (lambda reason: "")
     env.filters["line"] = line
     env.filters["number"] = number
+    env.filters["wall"] = wall_id
     env.filters["numbers"] = lambda values: " ".join(number(v) for v in values)
     return env
 

@@ -61,7 +61,7 @@ class Host(Engine[Any, Any]):
 
     def data(self, deck: Any) -> dict[str, str]:
         """The data files of a deck of impacts by name."""
-        return {deck.data: data_text(deck.plan, len(deck.types))}
+        return {"impact.data": data_text(deck.plan, len(deck.types))}
 
     def files(self, job: Plan | ScenePlan) -> dict[str, str]:
         if isinstance(job, ScenePlan):
@@ -119,17 +119,6 @@ class Host(Engine[Any, Any]):
         if plan.stress_walls:
             found["walls"] = own.wall_table(plan, folder, without)
         return found | {"phases": plan.phase_table}
-
-
-def impact_head(plan: Plan) -> decks.Head:
-    """The head of the deck of impacts."""
-    x = plan.experiment
-    return decks.Head(x.title, x.source, f"{plan.summary}, law {x.law.name}")
-
-
-def scene_head(p: ScenePlan) -> decks.Head:
-    """The head of the deck of a scene."""
-    return decks.Head(p.case.case.title, p.case.case.source, p.summary)
 
 
 def job_of(path: Path) -> Plan | ScenePlan:

@@ -125,11 +125,6 @@ def default_skin(p: ScenePlan) -> float:
     return float(f"{SKIN * p.smallest:.1e}")
 
 
-def wall_id(name: str) -> str:
-    """The id of a wall's fix: a name that a user gives to a part must not be the id of another fix."""
-    return f"wall_{name}"
-
-
 def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
     """The place that torques on a mesh refer to [m]: on the axis of its rotation."""
     origins = {tuple(rotation.origin) for rotation in p.rotations(name)}

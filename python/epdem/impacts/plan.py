@@ -166,7 +166,8 @@ class Plan:
     @property
     def summary(self) -> str:
         """One line for the head of a deck."""
-        return f"{self.experiment.speed.size} speeds x {self.phases} phases = {self.n} independent impacts"
+        speeds, law = self.experiment.speed.size, self.experiment.law.name
+        return f"{speeds} speeds x {self.phases} phases = {self.n} independent impacts, law {law}"
 
 
 def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:

@@ -15,8 +15,8 @@ from ...scenes import placement
 from ...scenes.columns import columns_of_frames
 from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
-from ..host import LIGGGHTS, refuse, scene_head
-from ..input_script import StopCondition, default_skin, row_words, stop_condition, wall_id
+from ..host import LIGGGHTS, refuse
+from ..input_script import StopCondition, default_skin, row_words, stop_condition
 from . import words
 from .scene_walls import DeckWall, meshes, motions, plane, plate_place, restart_commands
 
@@ -38,16 +38,11 @@ class ImpactDeck:
     """
 
     plan: Plan
-    head: decks.Head
-    data: str
     skin: float
     types: tuple[str, ...]
     pairs: tuple[str, ...]
     wall: str | None
-    oblique: bool
     columns: str = "z vz fz"
-    path: str = PATH
-    end: str = END
 
 
 def check(p: ScenePlan) -> None:
@@ -98,24 +93,19 @@ class Restart:
 class SceneDeck:
     """Values of the template of a scene.
 
-    materials: type, material, options of its contacts; pairs: two types, options. loads_of: number, id, whether the
-    wall has a torque. frozen: ids of spheres that rest. columns: of the frames.
+    materials: type, material, options of its contacts; pairs: two types, options. frozen: ids of spheres that rest.
+    columns: of the frames.
     """
 
     plan: ScenePlan
-    head: decks.Head
-    boundary: str
-    processors: str | None
     skin: float
     settings: str
     materials: tuple[tuple[int, str, str], ...]
     pairs: tuple[tuple[int, int, str], ...]
     motions: tuple[str, ...]
     walls: tuple[DeckWall, ...]
-    loads_of: tuple[tuple[int, str, bool], ...]
     frozen: tuple[int, ...]
     phases: tuple[PhaseCommands, ...]
-    mesh_ids: tuple[str, ...]
     contact_walls: tuple[str, ...]
     row_words: tuple[str, ...]
     columns: tuple[str, ...]
@@ -136,7 +126,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             fills=tuple(_fills(p, run.name)),
             gates=tuple(gates[name] for name in run.added),
             commands=tuple(motions(p, number)) if number else (),
-            ends=tuple(wall_id(name) for name in run.removed),
+            ends=tuple(decks.wall_id(name) for name in run.removed),
             stop=stop_condition(p, run, partial(plate_place, p)),
             restart_commands=restart_commands(p, number),
         )
@@ -148,23 +138,17 @@ def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LAMMPS cannot do."""
     check(p)
     m, types = p.model, range(1, len(p.model.types) + 1)
-    cut = p.case.numerics.processors
     return SceneDeck(
         plan=p,
-        head=scene_head(p),
-        boundary="p p f" if p.scene.periodic else "f f f",
-        processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         skin=p.case.numerics.skin or default_skin(p),
         settings=" energies" * (p.output.energy or p.contacts > 0) + " strain",
         materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
         pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),
         walls=(*(plane(p, w) for w in p.scene.planes), *meshes(p)),
-        loads_of=tuple((n, wall_id(name), name in p.scene.meshes) for n, name in enumerate(p.measured_walls, 1)),
         frozen=tuple(n for n, s in enumerate(p.scene.table, 1) if s.frozen),
         phases=tuple(_phases(p)),
-        mesh_ids=tuple(wall_id(name) for name in p.scene.meshes),
-        contact_walls=tuple(wall_id(w) for w in contact_walls(p)),
+        contact_walls=tuple(decks.wall_id(w) for w in contact_walls(p)),
         row_words=("f_ratio[1]", "f_ratio[2]", *row_words(p)),
         columns=tuple(WORKS.get(name, name.replace("_", "")) for name in columns_of_frames(p)),
     )

@@ -11,7 +11,7 @@ from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...scenes.model import Model
 from ...theory.sources import Source
-from ..host import Host, impact_head
+from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, resume, tables
 from .deck import ImpactDeck
@@ -55,12 +55,9 @@ class Lammps(Host):
         contacts = tuple(f"{of_type(m, i)} {options(m, i, i)}".rstrip() for i in range(1, len(m.types) + 1))
         return ImpactDeck(
             plan=plan,
-            head=impact_head(plan),
-            data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius),
             types=tuple(t.material for t in m.types),
             pairs=contacts,
             wall=contacts[-1] if wall else None,
-            oblique=x.oblique is not None,
             columns="z vz fz" if wall or not x.oblique else "x z vx vz fx fz",
         )

@@ -5,7 +5,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from ...base.rendering import number
+from ...base.rendering import number, wall_id
 from ...case.walls import (
     BoxWall,
     ConeWall,
@@ -26,7 +26,7 @@ from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import WRITE_RESTART, wall_id
+from ..input_script import WRITE_RESTART
 from . import words
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ...base.rendering import wall_id
 from ...errors import EngineError
 from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
@@ -17,7 +18,7 @@ from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
-from ..input_script import torque_origin, wall_id
+from ..input_script import torque_origin
 from .deck import END, PATH, contact_walls
 from .launcher import OUT
 

@@ -15,8 +15,7 @@ from ...impacts.plan import Plan
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
-from ..host import scene_head
-from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words, wall_id
+from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
 from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes, table
@@ -75,14 +74,10 @@ class ImpactDeck:
     """Values of the template of impacts. types: materials of the atom types. wall_type: None: two spheres meet."""
 
     plan: Plan
-    head: decks.Head
     contact: ContactWords
-    data: str
     skin: float
     types: tuple[str, ...]
-    oblique: bool
     wall_type: int | None
-    path: str
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
@@ -164,18 +159,14 @@ def _refuse_restarts(p: ScenePlan) -> None:
 class SceneDeck:
     """Values of the templates of a scene.
 
-    own_skin: whether the case gives it. frozen: ids of spheres that rest. open: whether a variable holds the step.
-    stress_walls: (name, id, whether it wears). from_restart: file from which the run continues, in the phase of number
-    `resumed_phase`; comes: whether the spheres that come with that phase are still to come.
+    frozen: ids of spheres that rest. open: whether a variable holds the step. from_restart: file from which the run
+    continues, in the phase of number `resumed_phase`; comes: whether the spheres that come with that phase are still to
+    come.
     """
 
     plan: ScenePlan
-    head: decks.Head
     contact: ContactWords
-    boundary: str
     skin: float
-    own_skin: bool
-    processors: str | None
     primitives: tuple[Primitive, ...]
     meshes: tuple[SurfaceMesh, ...]
     loads_of: tuple[WallLoad, ...]
@@ -183,7 +174,6 @@ class SceneDeck:
     insertions: tuple[InsertFix, ...]
     phases: tuple[DeckPhase, ...]
     open: bool
-    stress_walls: tuple[tuple[str, str, bool], ...]
     work_words: tuple[str, ...]
     history_columns: tuple[str, ...]
     wall_history_slots: tuple[int, ...]
@@ -208,15 +198,11 @@ def deck(p: ScenePlan) -> SceneDeck:
     _refuse_skin(p)
     _refuse_restarts(p)
     m, recorded = p.model, ["computePlasticWork on"] * bool(p.works) + ["computeContactStrain on"]
-    cut, commands = p.case.numerics.processors, phases(p)
+    commands = phases(p)
     return SceneDeck(
         plan=p,
-        head=scene_head(p),
         contact=contact_words(m, wear(p), recorded),
-        boundary="p p f" if p.scene.periodic else "f f f",
         skin=p.case.numerics.skin or default_skin(p),
-        own_skin=p.case.numerics.skin is not None,
-        processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         primitives=primitives(p),
         meshes=surface_meshes(p),
         loads_of=loads(p),
@@ -224,7 +210,6 @@ def deck(p: ScenePlan) -> SceneDeck:
         insertions=insertions(p),
         phases=commands,
         open=p.ends_early or any(phase.vibrations for phase in commands),
-        stress_walls=tuple((name, wall_id(name), bool(p.scene.meshes[name].wear)) for name in p.stress_walls),
         work_words=tuple(WORKS[name] for name in p.works),
         history_columns=history_columns(m),
         wall_history_slots=history_slots(m, wall=True),

@@ -16,7 +16,7 @@ from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
-from ..host import Host, impact_head
+from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, resume, tables
 from .deck import ImpactDeck, contact_words
@@ -56,14 +56,10 @@ class Liggghts(Host):
         check_features(self, x)
         return ImpactDeck(
             plan=plan,
-            head=impact_head(plan),
             contact=contact_words(m),
-            data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius),
             types=tuple(t.material for t in m.types),
-            oblique=x.oblique is not None,
             wall_type=len(m.types) if math.isinf(x.target.radius) else None,
-            path=deck.PATH,
         )
 
     def start(self, script: str, folder: Path, **how: Any) -> float:

@@ -21,7 +21,6 @@ from ...case.toml import text_of
 from ...errors import CaseError
 from ...scenes.plan import ScenePlan
 from ..host import job_of
-from ..input_script import data_text
 from .deck import deck as scene_deck
 from .engine import Liggghts
 from .properties import HARD
@@ -325,7 +324,7 @@ def write(
     else:
         deck = Liggghts().deck(job)
         values = {"deck": deck, "case": load_impact(case_path)}
-        beside = {deck.data: data_text(job, len(deck.types))}
+        beside = Liggghts().data(deck)
     text, unused = _render(template, values | sets)
     refuse_programs(text, template)
     if wrong := unused & set(sets):

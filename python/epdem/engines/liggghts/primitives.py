@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from ...base.rendering import number
+from ...base.rendering import number, wall_id
 from ...case.walls import CylinderWall, PlaneWall
 from ...scenes.plan import ScenePlan
-from ..input_script import wall_id
 
 WIDE = 3.0  # radius of a cylinder over the largest radius of a sphere: LIGGGHTS divides by zero on the axis
 

@@ -17,7 +17,7 @@ from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ..input_script import WRITE_RESTART, StopCondition, stop_condition, torque_origin, wall_id
+from ..input_script import WRITE_RESTART, StopCondition, stop_condition, torque_origin
 from .primitives import Primitive, primitive, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
@@ -227,12 +227,12 @@ def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
             words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
-        found.append(SurfaceMesh(wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
+        found.append(SurfaceMesh(decks.wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
     return tuple(found)
 
 
 def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
-    wall = wall_id(name)
+    wall = decks.wall_id(name)
     match move:
         case LinearMove():
             words = f"linear {_words(move.velocity)}"
@@ -250,7 +250,7 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
 def _place(p: ScenePlan, bed: PressedBed) -> str:
     k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
     reference = begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]  # LIGGGHTS moves it with the wall
-    return f"(f_{wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
+    return f"(f_{decks.wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
 def _phase_particle(p: ScenePlan, b: SingleSphere) -> PhaseParticle:
@@ -282,7 +282,7 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             resume_gates=tuple(gates[name] for name in run.phase.gates),
             resume_commands=tuple(begin for begin, _ in motions.values()),
             end_commands=(
-                *(f"unfix {wall_id(name)}" for name in run.removed),
+                *(f"unfix {decks.wall_id(name)}" for name in run.removed),
                 *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run.phase, after)),
             ),
             particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == run.name),
@@ -338,7 +338,7 @@ def power(p: ScenePlan, phase: Phase) -> str:
     """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
     terms = []
     for name, mesh in p.scene.meshes.items():
-        id, move = wall_id(name), phase.moves.get(name)
+        id, move = decks.wall_id(name), phase.moves.get(name)
         for rotation in (surface_rotation(mesh), move):
             if isinstance(rotation, RotateMove):
                 terms += _times(id, 4, [rotation.rate * x for x in rotation.unit_axis])

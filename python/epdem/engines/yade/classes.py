@@ -42,15 +42,6 @@ class Functors:
 
 
 @dataclass(frozen=True)
-class BodyTable:
-    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each, if oblique v_x and omega_y [rad/s]."""
-
-    data: str
-    radius: float
-    material: str
-
-
-@dataclass(frozen=True)
 class ContactClasses:
     """Law and materials of a deck. functors: of epdem_yade; None: the C library's law for `of_pair`, the numbers of the
     pair, or `native`, a law of YADE.

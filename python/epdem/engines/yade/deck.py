@@ -9,11 +9,11 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...case.walls import Move
-from ...impacts.plan import Plan, side_by_side
+from ...impacts.plan import Group, Plan, side_by_side
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
-from ..host import refuse, scene_head
-from .classes import BodyTable, ContactClasses, functors, materials
+from ..host import refuse
+from .classes import ContactClasses, functors, materials
 from .scene_parts import (
     EDGES,
     HEAD,
@@ -50,23 +50,19 @@ class Anvil:
 
 @dataclass(frozen=True)
 class ImpactDeck:
-    """Values of the template of impacts. rigid: whether the target is. wall_material: None: the target is a sphere.
+    """Values of the template of impacts. wall_material: None: the target is a sphere.
 
     samples: one more than the plan has, for a velocity is the mean of those half a step away. axes: of the trajectory.
     """
 
     plan: Plan
-    head: decks.Head
     contact: ContactClasses
-    rigid: bool
     anvil: Anvil | None
     wall_material: str | None
-    bodies: tuple[BodyTable, ...]
-    oblique: bool
+    bodies: tuple[Group, ...]
     skin: float
     samples: int
     axes: tuple[int, ...] = (2,)
-    path: str = "path.bin"
 
 
 def body_tables(plan: Plan) -> list[np.ndarray]:
@@ -123,27 +119,21 @@ class DeckPhase:
 class SceneDeck:
     """Values of the template of a scene.
 
-    cell: sides of the periodic cell [m]. walls: that are there at the start, `late`: that come later. facets, planes:
-    whether a wall has triangles, or is YADE's own. placed: whether spheres are there at the start. low, high: of the
-    room [m], of a periodic one along z. sampling: steps between two calls of the recorder. loads: walls with the place
-    of their torque.
+    cell: sides of the periodic cell [m]. walls: that are there at the start, `late`: that come later. placed: whether
+    spheres are there at the start. low, high: of the room [m], of a periodic one along z. sampling: steps between two
+    calls of the recorder. loads: walls with the place of their torque.
     """
 
     plan: ScenePlan
-    head: decks.Head
     contact: ContactClasses
     cell: tuple[float, float, float]
     walls: tuple[Wall, ...]
     late: tuple[Wall, ...]
-    facets: bool
-    planes: bool
     placed: bool
     low: tuple[float, ...]
     high: tuple[float, ...]
-    fall: float
     skin: float
     phases: tuple[DeckPhase, ...]
-    fills: bool
     motions: tuple[Move, ...]
     sampling: int
     works: tuple[str, ...]
@@ -179,20 +169,15 @@ def deck(p: ScenePlan) -> SceneDeck:
     every_step = p.row_columns or p.work_rows or any(mesh.wear for mesh in p.scene.meshes.values())
     return SceneDeck(
         plan=p,
-        head=scene_head(p),
         contact=ContactClasses(m.law, functors(m, shapes, recordStrain=True), materials(m)),
         cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
         walls=tuple(wall for name, wall in every_wall.items() if name in there),
         late=tuple(wall for name, wall in every_wall.items() if name not in there),
-        facets=any(wall.file for wall in every_wall.values()),
-        planes=any(not wall.file for wall in every_wall.values()),
         placed=_placed(p),
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
-        fall=-p.scene.gravity if p.scene.gravity else 0.0,
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
         phases=phases,
-        fills=any(phase.fills for phase in phases),
         motions=tuple(motion for phase in phases for motion in phase.motions),
         sampling=1 if every_step else p.sampling if p.measured_walls else p.every,
         works=tuple(WORKS[name] for name in p.works if name in WORKS),

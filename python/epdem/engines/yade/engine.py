@@ -14,15 +14,15 @@ from ...base.processes import captured_output
 from ...errors import CaseError
 from ...impacts.engine import check_features
 from ...impacts.experiment import Experiment
-from ...impacts.plan import Plan
+from ...impacts.plan import Plan, side_by_side
 from ...jobs.engine import Feature
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from ..host import Host, impact_head
+from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, tables
-from .classes import BodyTable, ContactClasses, DeckMaterial, functors, materials
+from .classes import ContactClasses, DeckMaterial, functors, materials
 from .deck import ImpactDeck, axes, body_tables
 from .launcher import command, copy_part, deck_modules, environment, module_version
 from .scene_parts import table_text
@@ -97,20 +97,14 @@ class Yade(Host):
         of_types, with_classes = materials(m), functors(m, ("Wall" if wall else "Sphere",))
         if not self.classes:  # with the C library the mass alone counts
             of_types = tuple(DeckMaterial(t.name, {"density": t.density}) for t in m.types)
-        bodies = [BodyTable("body.data", x.body.radius, x.body.material)]
-        if not wall:
-            bodies.append(BodyTable("target.data", x.target.radius, x.target.material))
         return ImpactDeck(
             plan=plan,
-            head=impact_head(plan),
             contact=ContactClasses(
                 m.law, with_classes if self.classes else None, of_types, self.of_pair(x), native=self.own_law
             ),
-            rigid=x.target.rigid,
             anvil=None,
             wall_material=x.target.material if wall else None,
-            bodies=tuple(bodies),
-            oblique=x.oblique is not None,
+            bodies=side_by_side(plan),
             axes=axes(plan),
             skin=0.1 * min(x.body.radius, x.target.radius),
             samples=plan.steps + 2,
@@ -122,9 +116,9 @@ class Yade(Host):
         return deck.notes(plan)
 
     def data(self, deck: Any) -> dict[str, str]:
-        head = "# x y z v_z v_x omega_y, SI" if deck.oblique else "# x y z v_z, SI"
+        head = "# x y z v_z v_x omega_y, SI" if deck.plan.experiment.oblique else "# x y z v_z, SI"
         tables = [table_text(head, table.tolist()) for table in body_tables(deck.plan)]
-        return dict(zip((b.data for b in deck.bodies), tables, strict=True))
+        return dict(zip(("body.data", "target.data"), tables, strict=False))
 
     def files(self, job: Plan | ScenePlan) -> dict[str, str]:
         texts, scene = super().files(job), isinstance(job, ScenePlan)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ...base import rendering as decks
-from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, Upright, Vector3, VibrateMove
+from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, VibrateMove
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.filling import Insertion
@@ -42,19 +42,14 @@ class Wall:
 
 @dataclass(frozen=True)
 class DeckFill:
-    """Spheres that come during a phase at places that the run finds.
+    """Spheres that come during a phase at places that the run finds; their sizes are in a file of this number.
 
-    key: place of their number in the case. file: their sizes. circle: centre and radius of a round region. batch: of
-    the spheres that come every `every` steps; 0: all come at the begin.
+    batch: of the spheres that come every `every` steps; 0: all come at the begin.
     """
 
-    key: str
-    file: str
+    number: int
+    fill: Insertion
     seed: int
-    low: Sequence[float]
-    high: Sequence[float]
-    circle: Sequence[float] | None
-    velocity: Vector3
     batch: float
     every: int
 
@@ -127,17 +122,8 @@ def fills(p: ScenePlan, phase: Phase) -> Iterator[DeckFill]:
     for n, f in _late(p):
         if f.phase == phase.name:
             every = max(1, math.ceil(f.period / step)) if f.rate else 1
-            yield DeckFill(
-                key=f.key,
-                file=f"fill{n}.txt",
-                seed=p.case.numerics.seed + n,
-                low=f.region.limits[0::2],
-                high=f.region.limits[1::2],
-                circle=(*f.region.center, f.region.radius) if isinstance(f.region, Upright) else None,
-                velocity=f.velocity,
-                batch=f.rate * every * step if f.rate else 0.0,
-                every=every,
-            )
+            batch = f.rate * every * step if f.rate else 0.0
+            yield DeckFill(number=n, fill=f, seed=p.case.numerics.seed + n, batch=batch, every=every)
 
 
 def _late(p: ScenePlan) -> Iterator[tuple[int, Insertion]]:

@@ -2,7 +2,6 @@
 """Pairs of spheres for LIGGGHTS and LAMMPS in variants of the set-up with the same physics."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,11 +45,11 @@ def scripts(deck: object, pairs: Pairs, variant: str, engine: str = "liggghts") 
 def velocities(tool: Liggghts | Lammps, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     in_lammps, n = isinstance(tool, Lammps), pairs.plan.n
-    deck = replace(tool.deck(pairs.plan), path="out.txt" if in_lammps else "out.bin")
+    deck = tool.deck(pairs.plan)
     found = scripts(deck, pairs, variant, "lammps" if in_lammps else "liggghts")
     texts = {f"in.{k}": text for k, text in enumerate(found)}
-    write_texts(folder, texts | {deck.data: data(pairs, deck.types, variant == "swap")})
-    path = folder / deck.path
+    write_texts(folder, texts | {"impact.data": data(pairs, deck.types, variant == "swap")})
+    path = folder / ("out.txt" if in_lammps else "out.bin")
     for k in range(len(texts)):
         path.unlink(missing_ok=True)
         tool.launcher.run(f"in.{k}", folder, ranks=_ranks(variant), out=f"out.{k}", seconds=120)

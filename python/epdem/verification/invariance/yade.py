@@ -31,7 +31,7 @@ def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     tables = [np.hstack([side.place, side.velocity]).tolist() for side in pairs.ordered(variant == "swap")]
     data = {f"side{k}.data": table_text("# x y z v_x v_y v_z, SI", table) for k, table in enumerate(tables)}
     tool.put(texts | data, folder)
-    path = folder / deck.path
+    path = folder / "path.bin"
     path.unlink(missing_ok=True)
     for k, name in enumerate(texts):
         run(name, folder, out=f"out{k}.yade", seconds=120)

@@ -39,13 +39,10 @@ class LammpsMdr(Lammps):
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
         return ImpactDeck(
             plan=plan,
-            head=decks.Head(x.title, x.source, f"{plan.summary}, LAMMPS's mdr"),
-            data="impact.data",
             skin=0.2 * x.body.radius,
             types=(x.body.material,),
             pairs=(contact,),
             wall=contact,
-            oblique=False,
         )
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:

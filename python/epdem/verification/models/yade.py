@@ -50,4 +50,4 @@ class YadeLuding(Yade):
         )
         contact = replace(deck.contact, law="Luding", functors=None, materials=materials)
         anvil = Anvil(x.body.radius, x.target.material, -x.body.radius) if wall else None
-        return replace(deck, contact=contact, rigid=False, wall_material=None, anvil=anvil)
+        return replace(deck, contact=contact, wall_material=None, anvil=anvil)

@@ -2,7 +2,6 @@
 """Prescribed motions of two spheres in LIGGGHTS: every step sets both, then runs once."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -47,8 +46,7 @@ class LiggghtsMotions:
     def deck(self, touch: Touch, motion: Motion) -> Any:
         """The deck of a motion. Raises CaseError for what the engine cannot do."""
         plan = touch.plan(motion)
-        plain: Any = self.host().deck(plan, touch.model(plan))
-        return replace(plain, head=replace(plain.head, summary=summary(touch, motion)))
+        return self.host().deck(plan, touch.model(plan))
 
     def read(self, path: Path, steps: int) -> Array:
         """Forces and torques of the start and of every step. Raises EngineError."""
@@ -61,9 +59,9 @@ class LiggghtsMotions:
 
     def files(self, touch: Touch, motion: Motion) -> dict[str, str]:
         """Deck, start and steps of a motion by name; they run by hand in one folder. Raises CaseError."""
-        deck = replace(self.deck(touch, motion), data=DATA, path=self.path)
+        deck = self.deck(touch, motion)
         return {
-            DECK: decks.render(self.template, deck=deck, steps=STEPS),
+            DECK: decks.render(self.template, deck=deck, summary=summary(touch, motion), steps=STEPS),
             STEPS: "".join(self._steps(motion)),
             DATA: data(touch, motion, len(deck.types)),
         }

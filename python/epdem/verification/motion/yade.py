@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Prescribed motions of two spheres in YADE: no integrator, every step sets both."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,8 +45,7 @@ class YadeMotions:
 def deck(touch: Touch, motion: Motion) -> ImpactDeck:
     """The deck of a motion. Raises CaseError for what YADE cannot do."""
     plan = touch.plan(motion)
-    plain = Yade().deck(plan, touch.model(plan))
-    return replace(plain, head=replace(plain.head, summary=summary(touch, motion)), path="path.npy")
+    return Yade().deck(plan, touch.model(plan))
 
 
 def files(touch: Touch, motion: Motion) -> dict[str, str]:
@@ -55,5 +53,6 @@ def files(touch: Touch, motion: Motion) -> dict[str, str]:
     table = np.concatenate([motion.place, motion.velocity, motion.spin], axis=2).reshape(motion.steps, 18)
     lines = ["# of i, then of j: x y z [m], v [m/s], omega [rad/s]"]
     lines += [" ".join(map(decks.number, row)) for row in table.tolist()]
-    script = decks.render("verification/yade/motion.py.j2", deck=deck(touch, motion), steps=STEPS)
+    template, said = "verification/yade/motion.py.j2", summary(touch, motion)
+    script = decks.render(template, deck=deck(touch, motion), summary=said, steps=STEPS)
     return {SCRIPT: script, STEPS: "\n".join([*lines, ""])}
