@@ -180,7 +180,7 @@ def test_scenes(case, changes, says, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"phase": [FALL | {"move": [TURN | {"rate": "0 rpm"}]}]}, "axis or rate is zero, so nothing turns"),
+        ({"phase": [FALL | {"move": [TURN | {"rate": "0 rpm"}]}]}, "rate is zero, so nothing turns"),
         ({"phase": [FALL | {"move": [MOVE, MOVE]}]}, "two motions of wall 'floor'; give one"),
         ({"phase": [FALL | {"until": {"after": "1 s", "count": 1}}]}, "until.after must be below duration"),
         (

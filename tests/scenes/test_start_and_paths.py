@@ -118,7 +118,7 @@ motions = st.one_of(
     st.builds(
         RotateMove.model_construct,
         origin=vectors,
-        axis=st.sampled_from([[0.0, 0.0, 2.0], [0.6, 0.0, -0.8]]),
+        axis=st.sampled_from([[0.0, 0.0, 1.0], [0.6, 0.0, -0.8]]),
         rate=st.sampled_from([-2.0, 0.7, 9.0]),
     ),
 )

@@ -2,7 +2,7 @@
 """Common fields of cases of impacts and scenes: quantities, names, materials, law, dashpot; SI values out."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler, model_validator
@@ -82,6 +82,23 @@ class Frozen(BaseModel):
     """Keys that a case may have, and no others; values are never changed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+T = TypeVar("T", bound=float)
+
+
+class Interval(Frozen, Generic[T]):
+    """Values from one limit to a larger one; T: their quantity."""
+
+    start: T = Field(alias="from")
+    to: T
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.start < self.to:
+            unit = type(self).model_fields["to"].metadata[0].si
+            raise ValueError(f"'to' ({self.to:g} {unit}) must exceed 'from' ({self.start:g} {unit})")
+        return self
 
 
 class Header(Frozen):

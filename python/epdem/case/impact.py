@@ -15,6 +15,7 @@ from .fields import (
     Coefficient,
     Frozen,
     Header,
+    Interval,
     LawChoice,
     Length,
     Line,
@@ -53,25 +54,15 @@ class Target(Frozen):
     radius: Length | None = None
 
 
-class SpeedRange(Frozen):
+class SpeedRange(Interval[Speed]):
     """Speeds from `from` to `to`, evenly spaced in the logarithm."""
 
-    start: Speed = Field(alias="from")
-    to: Speed
     count: Annotated[int, Field(ge=2, le=1000)]
 
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if not self.to > self.start:
-            raise ValueError(f"'to' ({self.to:g} m/s) must exceed 'from' ({self.start:g} m/s)")
-        return self
 
-
-class AngleRange(Frozen):
+class AngleRange(Interval[Angle]):
     """Angles from `from` to `to`, evenly spaced."""
 
-    start: Angle = Field(alias="from")
-    to: Angle
     count: Annotated[int, Field(ge=2, le=1000)]
 
 

@@ -19,6 +19,7 @@ from .walls import (
     CylinderWall,
     LinearMove,
     MeshWall,
+    Pair,
     PartName,
     Place,
     PlaneWall,
@@ -27,7 +28,6 @@ from .walls import (
     Room,
     RotateMove,
     Side,
-    Span,
     Speeds,
     Upright,
     Vector,
@@ -81,7 +81,7 @@ class Repose(_OfSpheres):
 
     kind: Literal["repose"]
     over: Literal["distance", "x", "y"] = "distance"
-    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+    center: Pair = Field(default_factory=lambda: [0.0, 0.0])
 
 
 class CenterOfMass(_OfSpheres):

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
 
-from .fields import Frozen, Length, Name, Quantity
+from .fields import Frozen, Interval, Length, Name, Quantity
 from .units import to_si, within_limits
 
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
@@ -72,18 +72,10 @@ def number_in(path: Path, line: int, name: str, text: str) -> float:
     return value
 
 
-class _Limits(Frozen):
+class _Limits(Interval[Length]):
     """Radii between two limits [m], in `classes` classes of one radius each."""
 
-    start: Length = Field(alias="from")
-    to: Length
     classes: Annotated[int, Field(ge=2, le=50)] = 5
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if not self.to > self.start:
-            raise ValueError(f"'to' ({self.to:g} m) must exceed 'from' ({self.start:g} m)")
-        return self
 
 
 class Range(_Limits):

@@ -6,16 +6,26 @@ import math
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, model_validator
 
-from .fields import Frozen, Length, Name, Quantity, Speed, Spin, zero_vector
+from .fields import Frozen, Interval, Length, Name, Quantity, Speed, Spin, zero_vector
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]
 Vector = Annotated[list[Place], Field(min_length=3, max_length=3)]
 Axis = Literal["x", "y", "z"]
 PartName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
-Span = Annotated[list[Place], Field(min_length=2, max_length=2)]
+
+
+def _ordered(span: list[float]) -> list[float]:
+    """Raise ValueError unless a span begins below its end."""
+    if not span[0] < span[1]:
+        raise ValueError(f"{span[0]:g} m must be below {span[1]:g} m")
+    return span
+
+
+Pair = Annotated[list[Place], Field(min_length=2, max_length=2)]
+Span = Annotated[Pair, AfterValidator(_ordered)]  # from, to
 SIDES = {"-x": [-1.0, 0.0, 0.0], "-y": [0.0, -1.0, 0.0], "-z": [0.0, 0.0, -1.0]}
 SIDES |= {f"+{side[1]}": [abs(x) for x in vector] for side, vector in SIDES.items()}
 
@@ -31,16 +41,18 @@ def _side(value: object) -> object:
 Side = Annotated[Literal["-x", "+x", "-y", "+y", "-z", "+z"], BeforeValidator(_side)]  # or a vector of length 1
 
 
-Direction = Annotated[list[float], BeforeValidator(_vector), Field(min_length=3, max_length=3)]  # or a Side
+def _unit(direction: list[float]) -> list[float]:
+    """The direction with the length 1."""
+    length = math.hypot(*direction)
+    if not length:
+        raise ValueError("has no direction; give another one")
+    return [x / length for x in direction]
 
 
+Direction = Annotated[  # or a Side
+    list[float], BeforeValidator(_vector), Field(min_length=3, max_length=3), AfterValidator(_unit)
+]
 Limits = tuple[float, float, float, float, float, float]  # xlo xhi ylo yhi zlo zhi [m]
-
-
-def ordered(name: str, span: list[float]) -> None:
-    """Raise ValueError unless a span begins below its end."""
-    if not span[0] < span[1]:
-        raise ValueError(f"{name}: {span[0]:g} m must be below {span[1]:g} m")
 
 
 class Room(Frozen):
@@ -49,12 +61,6 @@ class Room(Frozen):
     x: Span
     y: Span
     z: Span
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        for name in "xyz":
-            ordered(name, getattr(self, name))
-        return self
 
     @property
     def limits(self) -> Limits:
@@ -72,12 +78,7 @@ class Upright(Frozen):
 
     diameter: Length
     z: Span
-    center: Span = Field(default_factory=lambda: [0.0, 0.0])
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        ordered("z", self.z)
-        return self
+    center: Pair = Field(default_factory=lambda: [0.0, 0.0])
 
     @property
     def radius(self) -> float:
@@ -145,14 +146,12 @@ class BoxWall(MeshWall):
 
     @model_validator(mode="after")
     def _faces(self) -> Self:
-        for name in "xyz":
-            ordered(name, getattr(self, name))
         if len(set(self.open)) == 6:
             raise ValueError("open: all six faces are open, so nothing is left; remove the wall")
         return self
 
 
-class _Round(MeshWall, ABC):
+class _Round(MeshWall, Interval[Place], ABC):
     """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
 
     ends: the ends that a disc closes. angular_velocity: of the surface about the axis. The wall is a body of
@@ -160,17 +159,9 @@ class _Round(MeshWall, ABC):
     """
 
     axis: Axis = "z"
-    start: Place = Field(alias="from")
-    to: Place
-    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+    center: Pair = Field(default_factory=lambda: [0.0, 0.0])
     ends: list[Literal["from", "to"]] = Field(default_factory=list)
     angular_velocity: Spin = 0.0
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if not self.start < self.to:
-            raise ValueError(f"'from' ({self.start:g} m) must be below 'to' ({self.to:g} m)")
-        return self
 
     @property
     def axis_point(self) -> list[float]:
@@ -209,7 +200,7 @@ class RevolvedWall(MeshWall):
 
     kind: Literal["revolved"]
     profile: Annotated[list[Annotated[tuple[Length, Place], Field(strict=False)]], Field(min_length=2, max_length=100)]
-    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+    center: Pair = Field(default_factory=lambda: [0.0, 0.0])
 
     @model_validator(mode="after")
     def _points(self) -> Self:
@@ -224,12 +215,6 @@ class Rotation(Frozen):
 
     axis: Direction
     angle: Annotated[float, Quantity("rad")]
-
-    @model_validator(mode="after")
-    def _axis(self) -> Self:
-        if not any(self.axis):
-            raise ValueError("axis = [0, 0, 0] has no direction; give another one")
-        return self
 
 
 class StlWall(MeshWall):
@@ -258,13 +243,6 @@ Speeds = Annotated[list[Annotated[float, Quantity("m/s")]], Field(min_length=3, 
 Vector3 = tuple[float, float, float]
 
 
-def unit(direction: list[float]) -> Vector3:
-    """The direction with the length 1."""
-    length = math.hypot(*direction)
-    x, y, z = (value / length for value in direction)
-    return (x, y, z)
-
-
 class _Move(Frozen):
     wall: PartName
 
@@ -286,13 +264,9 @@ class RotateMove(_Move):
 
     @model_validator(mode="after")
     def _turns(self) -> Self:
-        if not any(self.axis) or not self.rate:
-            raise ValueError("axis or rate is zero, so nothing turns; give other values, or remove the motion")
+        if not self.rate:
+            raise ValueError("rate is zero, so nothing turns; give another one, or remove the motion")
         return self
-
-    @property
-    def unit_axis(self) -> Vector3:
-        return unit(self.axis)
 
 
 class VibrateMove(_Move):
@@ -315,16 +289,6 @@ class PressMove(_Move):
     direction: Direction
     force: Force
     highest_speed: Speed
-
-    @model_validator(mode="after")
-    def _direction(self) -> Self:
-        if not any(self.direction):
-            raise ValueError("direction = [0, 0, 0] has no direction; give another one")
-        return self
-
-    @property
-    def unit_direction(self) -> Vector3:
-        return unit(self.direction)
 
 
 Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discriminator="kind")]

@@ -50,7 +50,7 @@ def _velocity(p: ScenePlan, row: NamedRow, rows: pd.DataFrame) -> np.ndarray:
     """Velocity [m/s] of a row's wall along its axis, or its turn [rad/s], in the interval that ends with each row."""
     if row.torque:
         (turn,) = p.rotations(row.wall)
-        return np.full(len(rows), turn.rate * turn.unit_axis[row.axis])
+        return np.full(len(rows), turn.rate * turn.axis[row.axis])
     phase = np.searchsorted([phase.end for phase in p.phases[:-1]], rows["step"])
     speeds: np.ndarray = np.array([phase.velocity(row.wall)[row.axis] for phase in p.phases])[phase]
     return speeds

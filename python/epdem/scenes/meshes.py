@@ -273,7 +273,7 @@ def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, second
         sines = [0.0, math.sin(angle)] + [1.0] * (angle >= math.pi / 2) + [-1.0] * (angle >= 3 * math.pi / 2)
         places = np.stack([points + sine * amplitude for sine in sines])
         return WallPath(places.min(axis=0), places.max(axis=0), places[1])
-    axis, angle = np.array(move.unit_axis) * math.copysign(1.0, move.rate), abs(move.rate) * seconds
+    axis, angle = np.array(move.axis) * math.copysign(1.0, move.rate), abs(move.rate) * seconds
     arm = points - np.array(move.origin)
     center = np.array(move.origin) + (arm @ axis)[:, None] * axis
     arm = points - center

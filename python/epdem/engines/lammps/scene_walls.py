@@ -164,7 +164,7 @@ def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
         case RotateMove():
             rate += move.rate
         case PressMove():
-            found = {axis: f"{number(u)}*T" for axis, u in zip("xyz", move.unit_direction, strict=True) if u}
+            found = {axis: f"{number(u)}*T" for axis, u in zip("xyz", move.direction, strict=True) if u}
     return found | ({"turn": f"{number(rate)}*T"} if rate else {})
 
 
@@ -178,7 +178,7 @@ def _motion_words(p: ScenePlan, name: str) -> str:
     if {*keys} & {*"xyz"}:
         found.append("move " + " ".join(f"v_{id}_{axis}" if axis in keys else "NULL" for axis in "xyz"))
     if "turn" in keys:
-        axes = {(tuple(r.unit_axis), tuple(r.origin)) for r in p.rotations(name)}
+        axes = {(tuple(r.axis), tuple(r.origin)) for r in p.rotations(name)}
         refuse(f"scene.wall.{name}", len(axes) > 1 and "several axes", "a region of LAMMPS turns about one")
         axis, origin = axes.pop()
         shifted = False  # across the axis
@@ -264,7 +264,7 @@ def plate_place(p: ScenePlan, bed: PressedBed) -> str:
 
 def _servo(id: str, move: PressMove) -> Iterator[str]:
     """Commands that move a wall: its speed over the highest speed is the relative error of its force, at most 1."""
-    force = "+".join(f"f_{id}[{k}]*{number(u)}" for k, u in enumerate(move.unit_direction, 1) if u)
+    force = "+".join(f"f_{id}[{k}]*{number(u)}" for k, u in enumerate(move.direction, 1) if u)
     error = f"v_{id}_error"
     yield f"variable {id}_error equal 1-({force})/{number(move.force)}"
     speed = f"({error}*(abs({error})<=1)+({error}>1)-({error}<-1))*{number(move.highest_speed)}"

@@ -224,7 +224,7 @@ def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
             style = "/stress/servo"
             corners = p.triangles[name].reshape(-1, 3)
             middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-            words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
+            words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
         found.append(SurfaceMesh(decks.wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
@@ -237,7 +237,7 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
         case LinearMove():
             words = f"linear {_words(move.velocity)}"
         case RotateMove():
-            axis = _words(tuple(math.copysign(1.0, move.rate) * x for x in move.unit_axis))
+            axis = _words(tuple(math.copysign(1.0, move.rate) * x for x in move.axis))
             period = decks.number(2 * math.pi / abs(move.rate))
             words = f"rotate origin {_words(move.origin)} axis {axis} period {period}"
         case VibrateMove():
@@ -328,7 +328,7 @@ def _times(name: str, first: int, values: Sequence[float]) -> list[str]:
 
 def _of_servo(id: str, press: PressMove) -> str:
     """The force on a wall that a force drives, along its direction, times its speed: see GAIN; at most the highest."""
-    force = f"({'+'.join(_times(id, 1, press.unit_direction))})"
+    force = f"({'+'.join(_times(id, 1, press.direction))})"
     error = f"(1+{force}/{decks.number(press.force)})"
     share = f"({error}*({error}<=1)*({error}>=-1)+({error}>1)-({error}<-1))"
     return f"{force}*{share}*{decks.number(press.highest_speed)}"
@@ -341,7 +341,7 @@ def power(p: ScenePlan, phase: Phase) -> str:
         id, move = decks.wall_id(name), phase.moves.get(name)
         for rotation in (surface_rotation(mesh), move):
             if isinstance(rotation, RotateMove):
-                terms += _times(id, 4, [rotation.rate * x for x in rotation.unit_axis])
+                terms += _times(id, 4, [rotation.rate * x for x in rotation.axis])
         if isinstance(move, LinearMove):
             terms += _times(id, 1, move.velocity)
         if isinstance(move, PressMove):
