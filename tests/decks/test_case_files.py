@@ -142,7 +142,7 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         ("case.name", "-rf", "case.name = '-rf', must be 1 to 64 letters, digits, - or _, the first of them not -"),
         ("case.name", "n" * 1000, f"case.name = '{'n' * 76}..., must be"),
         ("materials.steel.young_modulus", "1 " + "G" * 200, "young_modulus = '1 GGG"),
-        ("impact.speeds", "1 m/s", "impact.speeds = '1 m/s', must be a table"),
+        ("impact.speeds", "1 m/s", "impact.speeds = '1 m/s', must be a list; write it in [ ]"),
         ("materials.steel.two\nlines", 1, "materials.steel.'two\\nlines' = 1, unknown key"),
         ("case", KeyError, "case is missing"),
         ("law.name", "hook", "there are hertz, thornton"),

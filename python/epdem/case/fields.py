@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, model_validator
 from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from ..theory.indentation import VICKERS
@@ -82,6 +82,21 @@ class Frozen(BaseModel):
     """Keys that a case may have, and no others; values are never changed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+def by_shape() -> Discriminator:
+    """Chooses between the readings of a value by whether it is a table: "table" or "plain"."""
+    return Discriminator(lambda value: "table" if isinstance(value, dict | BaseModel) else "plain")
+
+
+def by_key(otherwise: str, **tags: str) -> Discriminator:
+    """Chooses between the readings of a table by the first of these keys that it has."""
+
+    def choose(value: object) -> str:
+        keys = value if isinstance(value, dict) else vars(value) if isinstance(value, BaseModel) else ()
+        return next((tag for key, tag in tags.items() if key in keys), otherwise)
+
+    return Discriminator(choose)
 
 
 T = TypeVar("T", bound=float)

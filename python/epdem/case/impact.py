@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, Tag, ValidationError, model_validator
 
 from ..errors import CaseError
 from .fields import (
@@ -26,6 +26,7 @@ from .fields import (
     Spin,
     Tangential,
     Viscous,
+    by_shape,
 )
 from .law import check_law
 from .messages import explain
@@ -66,6 +67,11 @@ class AngleRange(Interval[Angle]):
     count: Annotated[int, Field(ge=2, le=1000)]
 
 
+LISTED = Field(min_length=1, max_length=1000)
+Speeds = Annotated[Annotated[SpeedRange, Tag("table")] | Annotated[list[Speed], LISTED, Tag("plain")], by_shape()]
+Angles = Annotated[Annotated[AngleRange, Tag("table")] | Annotated[list[Angle], LISTED, Tag("plain")], by_shape()]
+
+
 class Impact(Frozen):
     """The two bodies and their speeds of approach along the normal.
 
@@ -76,9 +82,9 @@ class Impact(Frozen):
     kind: Literal["sphere-wall", "sphere-sphere"]
     body: ImpactingBody
     target: Target
-    speeds: SpeedRange | Annotated[list[Speed], Field(min_length=1, max_length=1000)]
-    angles: AngleRange | Annotated[list[Angle], Field(min_length=1, max_length=1000)] | None = None
-    spins: Annotated[list[Spin], Field(min_length=1, max_length=1000)] | None = None
+    speeds: Speeds
+    angles: Angles | None = None
+    spins: Annotated[list[Spin], LISTED] | None = None
 
     @model_validator(mode="after")
     def _target_has_radius(self) -> Self:
@@ -150,7 +156,7 @@ class Measured(Frozen):
     """Measured restitution beside theory in figure and page; no check uses it."""
 
     source: Line
-    speeds: Annotated[list[Speed], Field(min_length=1, max_length=1000)]
+    speeds: Annotated[list[Speed], LISTED]
     e_n: list[Annotated[float, Quantity("1", ge=0.0, le=HIGHEST_E_N, hint="percent?")]]
 
     @model_validator(mode="after")

@@ -7,7 +7,6 @@ from typing import Any
 from pydantic import ValidationError
 
 LONGEST = 80  # characters of a value that a message shows
-SHAPES = ("model_type", "model_attributes_type", "dict_type", "list_type")
 TEXTS = {
     "extra_forbidden": "unknown key; remove it or correct its spelling",
     "missing": "is missing; add it",
@@ -58,23 +57,6 @@ def _place(data: Any, problem: Any) -> tuple[tuple[Any, ...], Any]:
     return tuple(keys), data
 
 
-def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
-    """The problem to report: a misspelt key; of several readings of one value, the one that fits its shape best."""
-    places = [_place(data, p) for p in problems]
-
-    def rank(n: int) -> tuple[bool, bool, bool, bool]:
-        keys, value = places[n]
-        label = str(problems[n]["loc"][-1]) if problems[n]["loc"] else ""
-        return (
-            problems[n]["type"] != "extra_forbidden",
-            any(len(k) > len(keys) and k[: len(keys)] == keys for k, _ in places),  # a reading that matched more keys
-            problems[n]["type"] in SHAPES,
-            isinstance(value, dict | list) and label.endswith("float]"),  # not the reading as a quantity
-        )
-
-    return problems[min(range(len(problems)), key=rank)]
-
-
 def text_of_problem(problem: Any) -> str:
     """What a value must be, for one of the errors that pydantic reports."""
     text = TEXTS.get(problem["type"])
@@ -88,7 +70,8 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
         return f"{path} {OTHER_KIND[kind]}"
     if kind in data and other in data:
         return f"{path}: both [impact] and [scene] are given; keep one"
-    problem = _likeliest(data, error.errors())
+    problems = error.errors()
+    problem = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])  # a misspelt key first
     keys, value = _place(data, problem)
     context = problem.get("ctx", {})
     if problem["type"].startswith("union_tag"):
@@ -100,7 +83,7 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
     elif problem["type"] == "too_short":
         least, given = context["min_length"], context["actual_length"]
         text = f"has {given} values, must have at least {least}" if given else "is empty; give at least one value"
-    elif problem["type"] in SHAPES[:3]:
+    elif problem["type"] in ("model_type", "model_attributes_type", "dict_type"):
         text = f"must be a table; write [{place}] and its keys below"
     else:
         text = text_of_problem(problem)

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Field, Tag, model_validator
 
 from ..base.tables import Column
-from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, zero_vector
+from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, by_key, zero_vector
 from .outputs import Check, Row, Stages
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
 from .walls import (
@@ -33,10 +33,9 @@ from .walls import (
     Vector,
     VibrateMove,
     Wall,
-    has,
 )
 
-Region = Annotated[Annotated[Upright, Tag("with")] | Annotated[Room, Tag("without")], has("diameter")]
+Region = Annotated[Annotated[Upright, Tag("upright")] | Annotated[Room, Tag("room")], by_key("room", diameter="upright")]
 Bins = Annotated[int, Field(ge=2, le=1000)]
 
 
@@ -209,7 +208,7 @@ class FileFill(Frozen):
         return self
 
 
-AnyFill = Annotated[Annotated[FileFill, Tag("with")] | Annotated[Fill, Tag("without")], has("file")]
+AnyFill = Annotated[Annotated[FileFill, Tag("file")] | Annotated[Fill, Tag("fill")], by_key("fill", file="file")]
 
 
 class SingleSphere(Frozen):

@@ -9,9 +9,9 @@ from pathlib import Path
 from statistics import NormalDist
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
+from pydantic import BeforeValidator, Field, Tag, ValidationInfo, model_validator
 
-from .fields import Frozen, Interval, Length, Name, Quantity
+from .fields import Frozen, Interval, Length, Name, Quantity, by_key, by_shape
 from .units import to_si, within_limits
 
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
@@ -178,23 +178,12 @@ class Sieve(Frozen):
         return [(r, share / r**3) for r, share in reversed(classes) if share > 0]
 
 
-SIZES = {"sieve": Sieve, "mean": Normal, "deviation": Normal, "median": LogNormal, "ratio": LogNormal}
-
-
-def _kind(value: object) -> str:
-    """Which table of sizes a user means, by its keys."""
-    if isinstance(value, Normal | LogNormal | Sieve):
-        return type(value).__name__
-    keys = value if isinstance(value, dict) else {}
-    return next((model.__name__ for key, model in SIZES.items() if key in keys), Range.__name__)
-
-
 Sizes = Annotated[
-    Annotated[Range, Tag("Range")]
-    | Annotated[Normal, Tag("Normal")]
-    | Annotated[LogNormal, Tag("LogNormal")]
-    | Annotated[Sieve, Tag("Sieve")],
-    Discriminator(_kind),
+    Annotated[Range, Tag("range")]
+    | Annotated[Normal, Tag("normal")]
+    | Annotated[LogNormal, Tag("log")]
+    | Annotated[Sieve, Tag("sieve")],
+    by_key("range", sieve="sieve", mean="normal", deviation="normal", median="log", ratio="log"),
 ]
 
 
@@ -202,7 +191,7 @@ class Particles(Frozen):
     """Spheres of one material; `share` is their part of the mass that is filled in."""
 
     material: Name
-    radius: Length | Sizes
+    radius: Annotated[Annotated[Length, Tag("plain")] | Annotated[Sizes, Tag("table")], by_shape()]
     share: Share = 1.0
 
     @classmethod

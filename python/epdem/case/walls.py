@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from .fields import Frozen, Interval, Length, Name, Quantity, Speed, Spin, zero_vector
 from .sizes import FileName
@@ -93,16 +93,6 @@ class Upright(Frozen):
     @property
     def volume(self) -> float:
         return math.pi * self.radius**2 * (self.z[1] - self.z[0])
-
-
-def has(key: str) -> Discriminator:
-    """Chooses between the readings of a table by whether it has a key: "with" or "without"."""
-
-    def choose(value: object) -> str:
-        there = key in value if isinstance(value, dict) else hasattr(value, key)
-        return "with" if there else "without"
-
-    return Discriminator(choose)
 
 
 class _Wall(Frozen):
