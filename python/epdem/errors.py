@@ -8,7 +8,7 @@ class EpdemError(Exception):
     exit_code = 2
 
 
-class CaseError(EpdemError):
+class CaseError(EpdemError, ValueError):
     """A case file, an option or a parameter is wrong (exit code 2); nothing was written."""
 
 

@@ -237,10 +237,15 @@ def test_outputs_that_a_scene_of_parts_does_not_have(tmp_path):
         ("x,y,z,radius\n", "needs a line of heads and at least one row"),
         ("x,y,z,radius\n0,0,0.01\n", "line 2: 3 values, expected 4"),
         ("x,y,z,radius\n0,0,0.01,-1\n", "line 2: radius = -1 m, must be above 0"),
-        ("x,y,z,radius,colour\n0,0,0.01,0.001,1\n", "unknown or repeated column 'colour'; there are x, y"),
+        ("x,y,z,radius,colour\n0,0,0.01,0.001,1\n", "unknown column 'colour'; there are x, y"),
         ("x,y,radius\n0,0,0.001\n", "column 'z' is missing"),
+        (
+            "x,y,z,radius [mm]\n0,0,0.01,1\n",
+            "unknown column 'radius'; there are x, y, z, radius, material, vx, vy, vz, in SI",
+        ),
+        ("x,y,z,z\n0,0,0.01,1\n", "two columns have the same head; keep one"),
         ("x,y,z,radius,material\n0,0,0.01,0.001,glass\n", "give the material in the file or in the case"),
-        (b"x,y,z,r\xe4dius\n0,0,0,1\n", "t.csv is not UTF-8 at byte 7; save it as UTF-8"),
+        (b"x,y,z,r\xe4dius\n0,0,0,1\n", "t.csv: not UTF-8 at byte 7; save the file as UTF-8"),
     ],
 )
 def test_files_of_spheres(text, says, tmp_path):
@@ -270,9 +275,10 @@ def test_limits_of_size_place_and_steps(tmp_path, monkeypatch):
     [
         ("opening,retained\n1,2\n", "needs two columns with units, as 'opening [mm],retained [%]'"),
         ("opening [mm];retained [%]\n3;0\n2;100\n", "(divided by a comma); it has"),
-        ("opening [mm],passing [%]\n3,80\n2,20\n1,0\n", "the column 'passing [%]' is a running sum; give what each"),
+        ("opening [mm],passing [%]\n3,80\n2,20\n1,0\n", "the column 'passing' is a running sum; give what each"),
         ("opening [mm],retained [g]\n1,2\n", "the mass retained is in [%] or [1], not in [g]"),
         ("opening [mm],retained [%]\n1\n", "line 2: 1 values, expected 2"),
+        ("opening [kg],retained [%]\n1,100\n", "line 2: opening = '1.0 kg', the unit 'kg' has the wrong dimension"),
         ("opening [mm],retained [%]\n-1,100\n", "openings and shares must be at least 0"),
         ("opening [mm],retained [%]\n1,100\n", "different openings are needed, there are 1"),
         ("opening [mm],retained [%]\n2,0\n1,50\n", "the shares add up to 50, must be 100 within 2 %"),

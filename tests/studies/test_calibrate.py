@@ -396,7 +396,7 @@ def test_the_strength_of_an_indentation_curve_is_the_one_that_made_it(tmp_path):
         ("depth [nm],force [mN]\n1,1\n2,x\n3,1\n", "line 3: force = 'x'"),
         ("depth [nm],force [kg]\n1,1\n2,2\n", "has the wrong dimension"),
         ("depth [nm],force [mN]\n1,1\n2,2\n", "2 points of loading with a depth > 0, must be at least 3"),
-        ("", "must be depth and force"),
+        ("", "needs a line of heads and at least one row"),
     ],
 )
 def test_a_curve_that_cannot_be_read_is_named_with_its_line(text, words, tmp_path):

@@ -193,7 +193,7 @@ def test_a_latin_hypercube_has_one_point_in_each_part_of_each_axis_and_the_same_
 
 def test_a_table_has_units_in_its_cells_or_its_heading(tmp_path):
     path = tmp_path / "points.csv"
-    path.write_text('impact.body.radius [mm],law.yield_pressure\n1,"1 GPa"\n\n2.5,2 GPa\n')
+    path.write_text('# two of three\nimpact.body.radius [mm],law.yield_pressure\n1,"1 GPa"\n\n,\n2.5,2 GPa\n')
     assert points.table(path, KEYS) == [
         {"impact.body.radius": "1 mm", "law.yield_pressure": "1 GPa"},
         {"impact.body.radius": "2.5 mm", "law.yield_pressure": "2 GPa"},
@@ -203,13 +203,13 @@ def test_a_table_has_units_in_its_cells_or_its_heading(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "no points"),
-        ("impact.body.radius\n", "no points"),
+        ("", "needs a line of heads and at least one row"),
+        ("impact.body.radius\n", "at least one row"),
         ("impact.radius\n1 mm\n", "impact.body.radius"),
-        ("impact.body.radius,law.yield_pressure\n1 mm\n", "point 1 has 1 values, the heading 2 keys"),
-        ("impact.body.radius,impact.body.radius\n1 mm,2 mm\n", "a key has two columns; keep one"),
-        ("impact.body.radius,law.yield_pressure\n1 mm,\n", "point 1: a value is empty"),
-        ("impact.body.radius [mm\n1\n", r"the heading 'impact.body.radius \[mm' is not KEY or KEY"),
+        ("impact.body.radius,law.yield_pressure\n1 mm\n", "line 2: 1 values, expected 2"),
+        ("impact.body.radius,impact.body.radius\n1 mm,2 mm\n", "two columns have the same head; keep one"),
+        ("impact.body.radius,law.yield_pressure\n1 mm,\n", "line 2: a value is empty"),
+        ("impact.body.radius [mm\n1\n", r"no key 'impact.body.radius \[mm'; the nearest: impact.body.radius"),
         ("impact.body.radius\n\xe4", "not UTF-8 at byte 19; save the file as UTF-8"),
     ],
 )

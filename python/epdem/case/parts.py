@@ -11,7 +11,7 @@ from pydantic import Field, Tag, model_validator
 from ..base.tables import Column
 from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, by_key, zero_vector
 from .outputs import Check, Row, Stages
-from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
+from .sizes import Count, FileName, Mixture, Particles, Share, csv_table, number_in, refuse_shares
 from .walls import (
     Axis,
     CasePhase,
@@ -35,7 +35,9 @@ from .walls import (
     Wall,
 )
 
-Region = Annotated[Annotated[Upright, Tag("upright")] | Annotated[Room, Tag("room")], by_key("room", diameter="upright")]
+Region = Annotated[
+    Annotated[Upright, Tag("upright")] | Annotated[Room, Tag("room")], by_key("room", diameter="upright")
+]
 Bins = Annotated[int, Field(ge=2, le=1000)]
 
 
@@ -180,27 +182,25 @@ class FileFill(Frozen):
     @cached_property
     def spheres(self) -> list[Sphere]:
         """Every sphere of the file. Raises ValueError that names the line."""
-        heads, rows = csv_rows(self.file)
+        units, rows = csv_table(self.file)
         known = ["x", "y", "z", "radius", "material", "vx", "vy", "vz"]
-        for head in heads:
-            if head not in known or heads.count(head) > 1:
-                raise ValueError(f"{self.file}: unknown or repeated column {head[:40]!r}; there are {', '.join(known)}")
+        for head, unit in units.items():
+            if head not in known or unit:
+                names = ", ".join(known)
+                raise ValueError(f"{self.file}: unknown column {head[:40]!r}; there are {names}, in SI without units")
         for head in known[:4]:
-            if head not in heads:
+            if head not in units:
                 raise ValueError(f"{self.file}: column {head!r} is missing")
-        if ("material" in heads) == (self.material is not None):
+        if ("material" in units) == (self.material is not None):
             raise ValueError(f"{self.file}: give the material in the file or in the case, in one of them")
-        return [self._sphere(heads, line, fields) for line, fields in rows]
+        return [self._sphere(place, cells) for place, cells in rows]
 
-    def _sphere(self, heads: list[str], line: int, fields: list[str]) -> Sphere:
-        if len(fields) != len(heads):
-            raise ValueError(f"{self.file} line {line}: {len(fields)} values, expected {len(heads)}")
-        texts = dict(zip(heads, fields, strict=True))
-        x, y, z, radius = (number_in(self.file, line, key, texts[key]) for key in ("x", "y", "z", "radius"))
+    def _sphere(self, place: str, cells: dict[str, str]) -> Sphere:
+        x, y, z, radius = (number_in(place, key, cells[key]) for key in ("x", "y", "z", "radius"))
         if not 1e-12 < radius < 1e6:
-            raise ValueError(f"{self.file} line {line}: radius = {radius:g} m, must be above 0")
-        vx, vy, vz = (number_in(self.file, line, key, texts.get(key, "0")) for key in ("vx", "vy", "vz"))
-        return Sphere((x, y, z), radius, texts.get("material", self.material or ""), (vx, vy, vz))
+            raise ValueError(f"{place}: radius = {radius:g} m, must be above 0")
+        vx, vy, vz = (number_in(place, key, cells.get(key, "0")) for key in ("vx", "vy", "vz"))
+        return Sphere((x, y, z), radius, cells.get("material", self.material or ""), (vx, vy, vz))
 
     @model_validator(mode="after")
     def _readable(self) -> Self:

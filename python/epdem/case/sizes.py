@@ -11,13 +11,16 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, Tag, ValidationInfo, model_validator
 
+from ..errors import CaseError
 from .fields import Frozen, Interval, Length, Name, Quantity, by_key, by_shape
-from .units import to_si, within_limits
+from .toml import text_of
+from .units import read_number
 
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
 Count = Annotated[int, Field(ge=1, le=100_000_000)]
 LARGEST_FILE = 200_000_000  # bytes of a file beside a case
 MOST_SIEVES = 64
+_HEAD = re.compile(r"(.*?)\s*(?:\[(.+)\])?")
 
 
 def _find_file(value: object, info: ValidationInfo) -> Path:
@@ -41,34 +44,39 @@ def _find_file(value: object, info: ValidationInfo) -> Path:
 FileName = Annotated[Path, BeforeValidator(_find_file)]
 
 
-def csv_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """(heads, (line, fields) of each row) of a CSV file; `#` begins a comment. Raises ValueError."""
+def csv_table(path: Path) -> tuple[dict[str, str], list[tuple[str, dict[str, str]]]]:
+    """Units by head ("": none), and (place, cells by head) of each row, of a CSV file with heads NAME or NAME [UNIT].
+
+    `#` begins a comment. Raises CaseError.
+    """
+    lines = [(f"{path} line {n}", line.strip()) for n, line in enumerate(text_of(path, LARGEST_FILE).splitlines(), 1)]
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path} is not UTF-8 at byte {error.start}; save it as UTF-8") from None
-    except OSError as error:
-        raise ValueError(f"{path} cannot be read ({error.strerror})") from None
-    parsed = [(n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    try:
-        rows = [(n, [field.strip() for field in next(csv.reader([line]))]) for n, line in parsed]
+        rows = [(place, next(csv.reader([line]))) for place, line in lines if line and not line.startswith("#")]
     except csv.Error as error:
-        raise ValueError(
+        raise CaseError(
             f"{path} cannot be read ({error}); divide its values by commas, its rows by line ends"
         ) from None
+    rows = [(place, [*map(str.strip, cells)]) for place, cells in rows if any(map(str.strip, cells))]
     if len(rows) < 2:
-        raise ValueError(f"{path} needs a line of heads and at least one row")
-    return rows[0][1], rows[1:]
+        raise CaseError(f"{path} needs a line of heads and at least one row")
+    heads = [_HEAD.fullmatch(head) for head in rows[0][1]]
+    units = {head[1]: head[2] or "" for head in heads if head}
+    if len(units) < len(heads):
+        raise CaseError(f"{path}: two columns have the same head; keep one")
+    for place, cells in rows[1:]:
+        if len(cells) != len(units):
+            raise CaseError(f"{place}: {len(cells)} values, expected {len(units)}")
+    return units, [(place, dict(zip(units, cells, strict=True))) for place, cells in rows[1:]]
 
 
-def number_in(path: Path, line: int, name: str, text: str) -> float:
-    """A number in a field of a CSV file. Raises ValueError that names file, line and column."""
+def number_in(place: str, name: str, text: str) -> float:
+    """A number in a cell of a CSV file. Raises CaseError that names file, line and column."""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"{path} line {line}: {name} = {text[:40]!r} is not a number")
+        raise CaseError(f"{place}: {name} = {text[:40]!r} is not a number")
     return value
 
 
@@ -134,25 +142,21 @@ def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ..
     if isinstance(value, tuple):
         return value
     path = _find_file(value, info)
-    heads, lines = csv_rows(path)
-    units = [re.fullmatch(r".*\[(.+)\]", head) for head in heads]
-    if len(heads) != 2 or not all(units):
+    units, lines = csv_table(path)
+    if len(units) != 2 or not all(units.values()):
         form = "'opening [mm],retained [%]' (divided by a comma)"
-        raise ValueError(f"{path} needs two columns with units, as {form}; it has {heads}")
-    if re.search("pass|cumul", heads[1], re.IGNORECASE):
-        raise ValueError(f"{path}: the column {heads[1]!r} is a running sum; give what each sieve retains")
-    length, share = (str(unit[1]) for unit in units if unit)
+        raise ValueError(f"{path} needs two columns with units, as {form}; it has {[*units]}")
+    (first, length), (second, share) = units.items()
+    if re.search("pass|cumul", second, re.IGNORECASE):
+        raise ValueError(f"{path}: the column {second!r} is a running sum; give what each sieve retains")
     if share not in ("%", "1"):
         raise ValueError(f"{path}: the mass retained is in [%] or [1], not in [{share}]")
     rows = []
-    for n, fields in lines:
-        if len(fields) != 2:
-            raise ValueError(f"{path} line {n}: {len(fields)} values, expected 2")
-        opening = number_in(path, n, heads[0], fields[0])
-        retained = number_in(path, n, heads[1], fields[1])
+    for place, cells in lines:
+        opening, retained = (number_in(place, name, cells[name]) for name in units)
         if opening < 0 or retained < 0:
-            raise ValueError(f"{path} line {n}: openings and shares must be at least 0")
-        rows.append((within_limits(to_si(f"{opening!r} {length}", "m"), "m"), retained))
+            raise ValueError(f"{place}: openings and shares must be at least 0")
+        rows.append((read_number(f"{place}: {first}", f"{opening!r} {length}", "m", zero=True), retained))
     rows.sort(reverse=True)
     if not 2 <= len(rows) <= MOST_SIEVES or len({opening for opening, _ in rows}) < len(rows):
         raise ValueError(f"{path}: from 2 to {MOST_SIEVES} different openings are needed, there are {len(rows)}")

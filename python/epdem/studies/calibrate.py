@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The strength of a law from one e_n, a hardness or an indentation curve; strength and hardening exponent from e_n."""
 
-import csv
-import io
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,8 +10,9 @@ import numpy as np
 
 from ..case.impact import HIGHEST_E_N, Case, load
 from ..case.law import law_numbers
-from ..case.toml import error_context, text_of
-from ..case.units import to_si
+from ..case.sizes import csv_table, number_in
+from ..case.toml import error_context
+from ..case.units import read_number
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, apply_rate, bodies, pair_of
 from ..impacts.prediction import predict
@@ -207,22 +205,15 @@ def from_indentation(path: Path, curve: Path) -> Calibration:
 
 def _loading(curve: Path) -> tuple[np.ndarray, np.ndarray]:
     """Depths [m] > 0 and forces [N] of a curve's file up to the largest force. Raises CaseError."""
-    heads, *rows = [row for row in csv.reader(io.StringIO(text_of(curve))) if any(map(str.strip, row))] or [[]]
-    titles = [re.fullmatch(r"\s*(\w+)\s*\[(.+)\]\s*", head) for head in heads]
-    units = {match[1]: match[2] for match in titles if match}
-    if sorted(units) != sorted(CURVE) or len(heads) != 2:
-        raise CaseError(f"{curve}: the heading {','.join(heads)!r} must be depth and force, as 'depth [nm],force [mN]'")
-    columns: dict[str, list[float]] = {name: [] for name in units}
-    for n, row in enumerate(rows, 2):
-        if len(row) != 2:
-            raise CaseError(f"{curve} line {n}: {len(row)} values, must be 2")
-        for name, cell in zip(units, row, strict=True):
-            try:
-                columns[name].append(to_si(f"{cell.strip()} {units[name]}", CURVE[name]))
-            except ValueError as error:
-                raise CaseError(f"{curve} line {n}: {name} = {cell!r}, {error}") from None
-    depth, force = (np.array(columns[name]) for name in CURVE)
-    loading = slice(0, int(np.argmax(force)) + 1 if force.size else 0)
+    units, rows = csv_table(curve)
+    if units.keys() != CURVE.keys() or not all(units.values()):
+        raise CaseError(f"{curve}: the heads {', '.join(units)!r} must be depth and force, as 'depth [nm],force [mN]'")
+    scales = {name: read_number(f"{curve}: {name}", f"1 {units[name]}", si) for name, si in CURVE.items()}
+    depth, force = (
+        scale * np.array([number_in(place, name, cells[name]) for place, cells in rows])
+        for name, scale in scales.items()
+    )
+    loading = slice(0, int(np.argmax(force)) + 1)
     kept = depth[loading] > 0
     if kept.sum() < 3:
         raise CaseError(f"{curve}: {kept.sum()} points of loading with a depth > 0, must be at least 3")

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Points of a sweep: keys by dotted names; ranges, lists and tables of values; grids and Latin hypercubes."""
 
-import csv
 import difflib
-import io
 import itertools
 import math
 import re
@@ -24,8 +22,8 @@ from ...case.impact import Case
 from ...case.kinds import Keys, model_of
 from ...case.law import alternatives, law_keys
 from ...case.scene import SceneCase, SceneMaterial, is_scene
-from ...case.sizes import LARGEST_FILE
-from ...case.toml import strength_keys, text_of
+from ...case.sizes import csv_table
+from ...case.toml import strength_keys
 from ...case.units import to_si
 from ...errors import CaseError
 from ...laws.strengths import ADHESION
@@ -154,7 +152,6 @@ Value = Any  # as it stands in a case file: text, number, true or false, list, t
 Point = dict[str, Value]
 MOST = 1_000_000  # points of a sweep
 _SPLIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
-_HEAD = re.compile(r"\s*(\S+)\s*(?:\[(.*)\])?\s*")
 
 
 @dataclass(frozen=True)
@@ -351,27 +348,9 @@ def latin_hypercube(all_axes: dict[str, Axis], count: int, seed: int) -> list[Po
 
 def table(path: Path, keys: dict[str, Key]) -> list[Point]:
     """The points in a CSV file: a column per key, "KEY" with units in the cells or "KEY [UNIT]". Raises CaseError."""
-    try:
-        lines = io.StringIO(text_of(path, LARGEST_FILE), newline="")
-        heads, *rows = [row for row in csv.reader(lines) if any(map(str.strip, row))] or [[]]
-    except csv.Error as error:
-        raise CaseError(f"--points {path}: cannot be read ({error}); give a CSV file") from None
-    columns = []
-    for head in heads:
-        match = _HEAD.fullmatch(head)
-        if match is None:
-            raise CaseError(f"--points {path}: the heading {head!r} is not KEY or KEY [UNIT]")
-        require_key(match[1], keys, f"--points {path}")
-        columns.append((match[1], match[2] or ""))
-    if not rows:
-        raise CaseError(f"--points {path}: no points; write a line of keys and a line of values for each point")
-    if len({name for name, _ in columns}) < len(columns):
-        raise CaseError(f"--points {path}: a key has two columns; keep one")
-    points = []
-    for n, row in enumerate(rows, start=1):
-        if len(row) != len(columns):
-            raise CaseError(f"--points {path}: point {n} has {len(row)} values, the heading {len(columns)} keys")
-        cells = zip(columns, row, strict=True)
-        place = f"--points {path}, point {n}"
-        points.append({name: _value(f"{cell.strip()} {unit}".strip(), place) for (name, unit), cell in cells})
-    return points
+    units, rows = csv_table(path)
+    for name in units:
+        require_key(name, keys, f"--points {path}")
+    return [
+        {name: _value(f"{cell} {units[name]}".strip(), place) for name, cell in cells.items()} for place, cells in rows
+    ]
