@@ -6,18 +6,18 @@ import re
 import stat
 import sys
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from ..base.declarations import declarations
 from ..errors import CaseError
 
-KEYS = ("file", "sieve", "kind")  # of the names of files
 KIND = ".toml.j2"  # at the end of the name of a file with a kind of scene: other kinds are no files
 MAX_BYTES = 1_000_000  # of a case file
 MAX_DEPTH = 20  # of tables and lists in each other
+T = TypeVar("T")
 _DOTTED_KEY = re.compile(
     rf"""(?:^|[\[{{,])[ \t]*(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{MAX_DEPTH}}}""", re.M
 )
@@ -90,43 +90,33 @@ class LoadedCase(NamedTuple):
     place: object
 
 
+def files_in(data: Any) -> Iterator[tuple[Any, Any]]:
+    """(table, key) of each name of a file in the tables of a case, or in a point of a sweep, whose keys have dots."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ():
+        last = str(key).rpartition(".")[2]
+        if isinstance(value, str) and (last in ("file", "sieve") or (last == "kind" and value.endswith(KIND))):
+            yield data, key
+        else:
+            yield from files_in(value)
+
+
 def file_names(data: object) -> set[str]:
     """The names of files in the data of a case."""
-    parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    found: set[str] = set()
-    for key, value in parts:
-        found |= {value} if _is_file(key, value) else file_names(value)
-    return found
+    return {table[key] for table, key in files_in(data)}
 
 
-def _is_file(key: object, value: object) -> bool:
-    return key in KEYS and isinstance(value, str) and (key != "kind" or value.endswith(KIND))
-
-
-def resolve_paths(key: str, value: Any, folder: Path) -> Any:
-    """The value of a key of a case with absolute paths of its files, which are relative to `folder`.
+def with_whole_paths(data: T, folder: Path) -> T:
+    """The tables of a case, or a point of a sweep; its names of files, which count from `folder`, become absolute.
 
     Raises CaseError for a file that is not there.
     """
-    if isinstance(value, dict):
-        return {name: resolve_paths(f"{key}.{name}", v, folder) for name, v in value.items()}
-    if isinstance(value, list):
-        return [resolve_paths(f"{key}.{n}", v, folder) for n, v in enumerate(value)]
-    if not _is_file(key.rpartition(".")[2], value):
-        return value
-    path = (folder / value).resolve()
-    if not path.is_file():
-        raise CaseError(f"{key} = {value!r}: no such file; names of files count from the folder of the case ({folder})")
-    return str(path)
-
-
-def replace_file_names(text: str, names: Mapping[str, Path]) -> str:
-    """The text of a case with other names of files."""
-    for old, new in names.items():
-        key = rf"(\b(?:{'|'.join(KEYS)})\"?\s*=\s*)"
-        quoted = f'"{new}"'.replace("\\", r"\\")  # in a pattern a backslash counts twice
-        text = re.sub(rf"{key}([\"']){re.escape(old)}\2", rf"\1{quoted}", text)
-    return text
+    for table, key in files_in(data):
+        path = (folder / table[key]).resolve()
+        if not path.is_file():
+            counts = f"names of files count from the folder of the case ({folder})"
+            raise CaseError(f"{key} = {table[key]!r}: no such file; {counts}")
+        table[key] = str(path)
+    return data
 
 
 def portable_text(path: Path | str) -> str:
@@ -134,8 +124,13 @@ def portable_text(path: Path | str) -> str:
 
     Raises CaseError as `read_toml` does.
     """
-    text, folder = text_of(path), Path(path).parent
-    return replace_file_names(text, {name: (folder / name).resolve() for name in file_names(tables(text, path))})
+    text = text_of(path)
+    if not file_names(tables(text, path)):
+        return text
+    import tomlkit  # slow, and most cases name no file
+
+    with error_context(path):
+        return with_whole_paths(tomlkit.parse(text), Path(path).parent).as_string()
 
 
 def strength_keys() -> tuple[str, ...]:

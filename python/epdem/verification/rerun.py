@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
+import tomlkit
 
 from ..base.tables import attributes, open_results
-from ..case.toml import file_names, replace_file_names
+from ..case.toml import file_names, files_in
 from ..engines import scene_engine
 from ..errors import CaseError
 from ..impacts import run as impacts
@@ -60,9 +61,11 @@ def _scene(path: Path, scratch: Path, progress: Progress) -> Rerun:
     old = scene_store.read(path)
     about = old.attributes
     name, ranks = str(about["engine"]), int(str(about["ranks"]))
-    text = replace_file_names(old.case_text, _files(path, old, scratch))
+    document, places = tomlkit.parse(old.case_text), _files(path, old, scratch)
+    for table, key in files_in(document):
+        table[key] = str(places[table[key]])
     progress(f"{name}: {about['steps']} steps")
-    scenes.run(_case(text, scratch), scene_engine(name), out=scratch / "out", ranks=ranks)
+    scenes.run(_case(document.as_string(), scratch), scene_engine(name), out=scratch / "out", ranks=ranks)
     new = scene_store.read(scratch / "out/results.h5")
     found = _texts(old.decks, new.decks) | _tables(old.tables, new.tables)
     return Rerun(path, _versions(about, new.attributes), found)

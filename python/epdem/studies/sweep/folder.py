@@ -111,17 +111,13 @@ class Sweep:
 
     @cached_property
     def _hashes(self) -> dict[str, str]:
-        names = file_names(self.tables).union(*map(self._files, self.points))
+        names = file_names(self.tables).union(*map(file_names, self.points))
         return {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in names if Path(name).is_file()}
-
-    @staticmethod
-    def _files(point: Point) -> set[str]:
-        return file_names([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:
         """Hash of the case of a point with its files, of the engines and of epdem: a point with another one is looked
         at again, and its engines run if their own inputs have changed."""
-        names = file_names(self.data(number)) if self._files(self.points[number - 1]) else file_names(self.tables)
+        names = file_names(self.data(number)) if file_names(self.points[number - 1]) else file_names(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
         known = (self.data(number), self.identities[number - 1], sorted(self.versions.items()), contents)
         return hashlib.sha256(f"{paths.product_hash()}{known!r}".encode()).hexdigest()

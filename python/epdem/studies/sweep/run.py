@@ -21,7 +21,7 @@ from ...base.files import claim
 from ...case import impact, scene
 from ...case.plausibility import case_warnings
 from ...case.scene import is_scene
-from ...case.toml import error_context, portable_text, resolve_paths
+from ...case.toml import error_context, portable_text, with_whole_paths
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.comparison import compare
@@ -213,11 +213,7 @@ def plan(
     return Sweep(
         name=str(data.get("case", {}).get("name", "case")),
         case=text,
-        points=tuple(
-            {key: resolve_paths(key, value, folder) for key, value in (row | point).items()}
-            for row in rows
-            for point in many
-        ),
+        points=tuple(with_whole_paths(row | point, folder) for row in rows for point in many),
         engines=chosen,
         laws=tuple(dict.fromkeys(laws)),
         ranks=ranks,
