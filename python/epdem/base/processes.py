@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
-from typing import IO, Any
+from typing import Any
 
 import psutil
 
@@ -86,7 +86,7 @@ def _raise_stopped(what: Any) -> None:
 
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
-ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
+ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$", re.M)
 POLL = 0.1  # [s] between two reads of a growing log
 PATIENCE = 5.0  # [s] for each of SIGTERM and SIGKILL
 _PR_SET_PDEATHSIG = 1
@@ -119,14 +119,33 @@ def call(
     and all that it started are stopped first; what they wrote stays. If this process itself is killed, the program
     receives SIGTERM.
     """
-    path, start = folder / log, time.monotonic()
+    path, start, rest = folder / log, time.monotonic(), b""
     end = math.inf if seconds is None else start + seconds
     with path.open("ab" if append else "wb") as stream, path.open("rb") as reader:
-        begin = reader.seek(0, os.SEEK_END)
-        rows, process = _Rows(report), None
+        begin, process = reader.seek(0, os.SEEK_END), None
+
+        def follow() -> None:
+            nonlocal rest
+            if report:
+                lines, _, rest = (rest + reader.read()).rpartition(b"\n")
+                for row in ROW.finditer(lines):
+                    report(int(row[1]))
+
         try:
             with uninterrupted():
-                process = start_program(command, folder, stdin=subprocess.DEVNULL, stdout=stream, env=env)
+                try:
+                    process = subprocess.Popen(
+                        command,
+                        cwd=folder,
+                        stdin=subprocess.DEVNULL,
+                        stdout=stream,
+                        stderr=subprocess.STDOUT,
+                        env=env,
+                        start_new_session=True,
+                        preexec_fn=end_with_parent,
+                    )
+                except OSError as error:
+                    raise EngineError(f"{command[0]}: cannot be started ({error})") from None
             while process.poll() is None:
                 left = end - time.monotonic()
                 if left <= 0.0:
@@ -136,8 +155,8 @@ def call(
                     )
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
-                rows.read(reader.read() if report else b"")
-            rows.read(reader.read() if report else b"")
+                follow()
+            follow()
             reader.seek(begin)
             failed = process.returncode or any(line.startswith(b"ERROR") for line in reader)
         except BaseException:  # a time-out, Ctrl-C or an error of the caller: the process is stopped too
@@ -145,49 +164,9 @@ def call(
                 kill(process)
             raise
     if failed:
-        raise EngineError(failure(command[0], process.returncode, path))
+        how = f"exit code {process.returncode}" if process.returncode >= 0 else f"signal {-process.returncode}"
+        raise EngineError(f"{command[0]} failed ({how}); {path}: {last_words(path)}")
     return time.monotonic() - start
-
-
-def start_program(
-    command: list[str], folder: Path, *, stdin: int, stdout: int | IO[bytes], env: dict[str, str] | None
-) -> subprocess.Popen[bytes]:
-    """A program in its own session, which ends with this process; both its streams go to `stdout`.
-
-    Raises EngineError if it cannot be started.
-    """
-    try:
-        return subprocess.Popen(
-            command,
-            cwd=folder,
-            stdin=stdin,
-            stdout=stdout,
-            stderr=subprocess.STDOUT,
-            env=env,
-            start_new_session=True,
-            preexec_fn=end_with_parent,
-        )
-    except OSError as error:
-        raise EngineError(f"{command[0]}: cannot be started ({error})") from None
-
-
-def failure(program: str, status: int, log: Path) -> str:
-    """Sentence on the end of a program: exit status and last lines of its log."""
-    how = f"signal {-status}" if status < 0 else f"exit code {status}"
-    return f"{program} failed ({how}); {log}: {last_words(log)}"
-
-
-class _Rows:
-    """The steps of the rows in a text that comes in pieces."""
-
-    def __init__(self, report: Callable[[int], None] | None):
-        self.report, self.rest = report, b""
-
-    def read(self, piece: bytes) -> None:
-        *lines, self.rest = (self.rest + piece).split(b"\n")
-        for line in lines:
-            if self.report and (match := ROW.match(line)):
-                self.report(int(match.group(1)))
 
 
 def captured_output(command: list[str], env: dict[str, str] | None = None) -> str:
