@@ -15,7 +15,7 @@ from ..case import impact as impact_case
 from ..case import scene as scene_case
 from ..case.toml import LoadedCase, portable_text
 from ..studies.sweep import points
-from ..studies.sweep.points import as_lists, with_units
+from ..studies.sweep.points import with_units
 from .arguments import Table, take
 
 
@@ -39,7 +39,7 @@ class _File:
         given = tables.pop("case", {})
         name = given.get("name", self.kind) if isinstance(given, dict) else self.kind
         header = {"name": name, "title": name, "source": "made in Python"}
-        data = as_lists({"case": header | given if isinstance(given, dict) else given} | tables)
+        data = with_units({"case": header | given if isinstance(given, dict) else given} | tables, {})
         self._read(tomlkit.dumps(with_units(data, points.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
@@ -73,7 +73,7 @@ class _File:
         data = copy.deepcopy(before)
         for name, value in changes.items():
             try:
-                points.assign(data, name, as_lists(value))
+                points.assign(data, name, with_units(value, {}, name))
             except (TypeError, ValueError, LookupError):  # a name below a value, or beyond the end of a list
                 points.require_key(name, points.keys_of(before), "replace")
                 raise

@@ -301,7 +301,7 @@ def with_units(value: Any, names: dict[str, Key], place: str = "") -> Value:
     """A value of a program as a case file has it: a table, a list or a single value of the key `place`.
 
     A plain number of a quantity is in SI and gets its unit; numpy's values become Python's. `names`: every key of the
-    case. Raises CaseError for a value of a type that TOML does not have.
+    case; with none, numbers stay. Raises CaseError for a value of a type that TOML does not have.
     """
     value = value.tolist() if isinstance(value, np.generic | np.ndarray) else value
     if isinstance(value, Mapping):
@@ -314,15 +314,6 @@ def with_units(value: Any, names: dict[str, Key], place: str = "") -> Value:
         raise CaseError(f"{place} = {value!r}: of type {type(value).__name__}; give a number in SI or a text")
     unit = names.get(place, Key()).unit
     return f"{float(value)!r} {unit}" if unit not in (None, "1") and not isinstance(value, str | bool) else value
-
-
-def as_lists(value: Any) -> Any:
-    """Arrays and tuples as lists, at any depth."""
-    if isinstance(value, Mapping):
-        return {str(k): as_lists(v) for k, v in value.items()}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [as_lists(v) for v in value] if isinstance(value, list | tuple) else value
 
 
 def grid(all_axes: dict[str, Axis]) -> list[Point]:
