@@ -112,7 +112,7 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
         ("{% set r = diameter / 2 %}", "", "scene of kind './mill.toml.j2': 'r' is undefined"),
         ('kind = "cylinder"', 'kind = "tube"', "scene of kind './mill.toml.j2': wall.0.kind = 'tube', must be one of"),
         ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
-        ('wall = "shell"', 'wall = "hull"', "row.torque.wall: 'hull' is no wall that has a torque"),
+        ('wall = "shell"', 'wall = "hull"', "row.torque.wall = 'hull' is no wall that has a torque"),
     ],
 )
 def test_a_mistake_of_a_kind_names_its_file(old, new, words, mill):

@@ -2,7 +2,8 @@
 """A scene made of parts: walls, fills, single bodies, phases; named numbers and curves of its results. SI."""
 
 import math
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Annotated, Literal, NamedTuple, Self
 
@@ -268,49 +269,37 @@ class Parts(Frozen):
     def _parts(self) -> Self:
         if not self.fill and not self.body:
             raise ValueError("no spheres; add [[scene.fill]] or [[scene.body]]")
-        self._unique()
-        phases = [p.name for p in self.phase]
+        for kind in ("wall", "fill", "body", "phase"):
+            for name, parts in Counter(part.name for part in getattr(self, kind)).items():
+                if parts > 1:
+                    raise ValueError(f"{kind}.{name}: two parts of {kind} have the name {name!r}; give each its own")
         if not self.phase[-1].record:
             raise ValueError(
-                f"phase.{phases[-1]}.record = false: the last phase is recorded, for its end is the result"
+                f"phase.{self.phase[-1].name}.record = false: the last phase is recorded, for its end is the result"
             )
-        for place, name in self._named_phases():
-            if name not in phases:
-                raise ValueError(f"{place} = {name!r} is no phase; there are {', '.join(phases)}")
-        moving = [w.name for w in self.wall if not isinstance(w, PlaneWall)]
-        for p in self.phase:
-            for m in p.move:
-                if m.wall not in moving:
-                    known = f"there are {', '.join(moving)}" if moving else "there is none"
-                    raise ValueError(
-                        f"phase.{p.name}.move: {m.wall!r} is no wall of triangles, which can move; {known}"
-                    )
-            if p.until and p.until.wall and p.until.wall not in [w.name for w in self.wall]:
-                raise ValueError(f"phase.{p.name}.until.wall = {p.until.wall!r} is no wall")
-        for row in self.row:
-            if row.wall not in (moving if row.position or row.torque else [w.name for w in self.wall]):
-                raise ValueError(f"row.{row.name}.wall: {row.wall!r} is no wall that has a {row.quantity}")
-        for w in self.wall:
-            if isinstance(w, PlaneWall) and w.phases:
-                places = sorted(phases.index(name) for name in w.phases)
-                if places != list(range(places[0], places[-1] + 1)):
-                    raise ValueError(f"wall.{w.name}.phases: a wall that went does not come back; name phases in a row")
+        for place, name, what, known in self._references():
+            if name not in known:
+                raise ValueError(f"{place} = {name!r} is no {what}; there are {', '.join(known) or 'none'}")
+        phases = [p.name for p in self.phase]
+        for w in self.gates:
+            places = sorted(phases.index(name) for name in w.phases)
+            if places != list(range(places[0], places[-1] + 1)):
+                raise ValueError(f"wall.{w.name}.phases: a wall that went does not come back; name phases in a row")
         return self
 
-    def _unique(self) -> None:
-        kinds: tuple[tuple[str, Iterable[Frozen]], ...]
-        kinds = (("wall", self.wall), ("fill", self.fill), ("body", self.body), ("phase", self.phase))
-        for kind, parts in kinds:
-            names = [getattr(part, "name", "") for part in parts]
-            for name in names:
-                if names.count(name) > 1:
-                    raise ValueError(f"{kind}.{name}: two parts of {kind} have the name {name!r}; give each its own")
-
-    def _named_phases(self) -> list[tuple[str, str]]:
-        found = [(f"fill.{f.name}.phase", f.phase) for f in self.fill if isinstance(f, Fill) and f.phase]
-        found += [(f"body.{b.name}.phase", b.phase) for b in self.body if b.phase]
-        found += [(f"wall.{w.name}.phases", p) for w in self.wall if isinstance(w, PlaneWall) for p in w.phases]
-        return found
+    def _references(self) -> Iterator[tuple[str, str, str, list[str]]]:
+        """(place, name, what it must be, the names of all such parts) of each name of another part."""
+        phases, walls, moving = [p.name for p in self.phase], [w.name for w in self.wall], [*self.meshes]
+        yield from ((f"fill.{f.name}.phase", f.phase, "phase", phases) for f in self.random_fills if f.phase)
+        yield from ((f"body.{b.name}.phase", b.phase, "phase", phases) for b in self.body if b.phase)
+        yield from ((f"wall.{w.name}.phases", name, "phase", phases) for w in self.gates for name in w.phases)
+        for p in self.phase:
+            yield from ((f"phase.{p.name}.move", m.wall, "wall of triangles, which can move", moving) for m in p.move)
+            if p.until and p.until.wall:
+                yield f"phase.{p.name}.until.wall", p.until.wall, "wall", walls
+        for row in self.row:
+            has_it = moving if row.position or row.torque else walls
+            yield f"row.{row.name}.wall", row.wall, f"wall that has a {row.quantity}", has_it
 
     def place(self, name: str) -> str:
         """The place of a part in the case: for a part of a kind its key."""
