@@ -16,7 +16,7 @@ from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
 from ..laws.library import Law
-from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, find_law
+from ..laws.strengths import LawNumbers, LawSpec, default_numbers, find_law
 from ..theory import law as theory_law
 from ..theory import pair
 from ..theory.backbones import ADHESIVE, LAWS, Backbone
@@ -157,8 +157,8 @@ class Experiment:
 def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     """The law of two bodies. Raises CaseError where a yield stress or surface energy is missing."""
     strong = [numbers.strength(b.material, b) for b in (body, target)]
-    surfaces = [Surface(b.material, b.surface_energy) for b in (body, target)]
-    spec = numbers.pair(strong[0], strong[1], numbers.work_of_adhesion(*surfaces))
+    adhesion = numbers.work_of_adhesion({b.material: b.surface_energy for b in (body, target)})
+    spec = numbers.pair(strong[0], strong[1], adhesion)
     return replace(spec, common=numbers.absolute is not None)
 
 

@@ -46,14 +46,6 @@ class Solid(Protocol):
     def yield_ratio(self) -> float | None: ...
 
 
-@dataclass(frozen=True)
-class Surface:
-    """The surface of a material: its name and its surface energy gamma [J/m^2], None: not given."""
-
-    material: str
-    energy: float | None = None
-
-
 def own_ratios(name: str, parameters: Mapping[str, float]) -> dict[str, float]:
     """The dimensionless ones of a law's parameters that differ from its defaults, by the law's own names."""
     known = find_law(name).parameters
@@ -175,36 +167,35 @@ class LawNumbers:
             )
         return self.ratio * yield_stress
 
-    def work_of_adhesion(self, body: Surface, target: Surface) -> float | None:
-        """Gamma of two bodies [J/m^2]; None for a law without adhesion.
+    def work_of_adhesion(self, energies: Mapping[str, float | None]) -> float | None:
+        """Gamma of two bodies [J/m^2] from the surface energies of their materials (None: not given), by name.
 
-        Raises CaseError if it does not follow from what is given, or if more is given than the law takes.
+        None for a law without adhesion. Raises CaseError if it does not follow from what is given, or if more is given
+        than the law takes.
         """
-        given = [s for s in (body, target) if s.energy is not None]
+        given = {name: energy for name, energy in energies.items() if energy is not None}
         if not find_law(self.name).adheres:
-            if wrong := next((s for s in given if s.energy), None):
+            if wrong := next((name for name, energy in given.items() if energy), None):
                 adhesive = [law for law in declarations().values() if law.adheres]
                 own = [law.name for law in adhesive if law.without_adhesion == self.name]
                 reason = "" if own else ", and no theory of adhesion exists for it"
                 others = " or ".join(map(repr, own or [law.name for law in adhesive]))
                 raise CaseError(
-                    f"materials.{wrong.material}.surface_energy = {wrong.energy:g} J/m^2: law {self.name} has no "
-                    f"adhesion{reason}; take law.name = {others}, or remove the surface energy"
+                    f"materials.{wrong}.surface_energy = {given[wrong]:g} J/m^2: law {self.name} has no adhesion"
+                    f"{reason}; take law.name = {others}, or remove the surface energy"
                 )
             return None
         if self.adhesion is not None:
-            if given:
-                raise CaseError(
-                    f"both law.{ADHESION} and materials.{given[0].material}.surface_energy are given; keep one"
-                )
+            for name in given:
+                raise CaseError(f"both law.{ADHESION} and materials.{name}.surface_energy are given; keep one")
             return self.adhesion
-        if body.energy is None or target.energy is None:
-            missing = body.material if body.energy is None else target.material
+        if missing := [name for name in energies if name not in given]:
             raise CaseError(
                 f"law {self.name} needs law.{ADHESION} (of all pairs), or the surface_energy of every material, which "
-                f"{missing!r} has not; add it"
+                f"{missing[0]!r} has not; add it"
             )
-        return 2.0 * math.sqrt(body.energy * target.energy)
+        gammas = list(given.values())  # one, if both bodies are of one material
+        return 2.0 * math.sqrt(gammas[0] * gammas[-1])
 
     def pair(self, body: float, target: float, adhesion: float | None = None) -> LawSpec:
         """The law of two bodies of these strengths [Pa] and this work of adhesion [J/m^2] (None: without adhesion)."""

@@ -10,7 +10,7 @@ from ..case.law import law_numbers
 from ..case.scene import Rolling, SceneCase
 from ..case.units import read_number
 from ..errors import CaseError
-from ..laws.strengths import LawNumbers, LawSpec, Surface, find_law, own_ratios
+from ..laws.strengths import LawNumbers, LawSpec, find_law, own_ratios
 from ..theory.pair import E_star
 
 WALL = "wall"
@@ -209,8 +209,7 @@ def strengths(case: SceneCase) -> dict[str, float]:
 
 def work_of_adhesion(case: SceneCase, a: str, b: str) -> float | None:
     """Gamma of two materials [J/m^2]; None for a law without adhesion. Raises CaseError."""
-    surfaces = [Surface(name, case.materials[name].surface_energy) for name in (a, b)]
-    return numbers(case).work_of_adhesion(*surfaces)
+    return numbers(case).work_of_adhesion({name: case.materials[name].surface_energy for name in (a, b)})
 
 
 def pair_law(case: SceneCase, a: str, b: str) -> tuple[LawSpec, float]:
