@@ -4,11 +4,12 @@
 import ctypes
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from epdem.base.declarations import declarations
-from epdem.laws.library import IMPACT_INPUT, IMPACT_OUTPUT, StepResult, library
+from epdem.laws.library import IMPACT_INPUT, IMPACT_OUTPUT, library
 
 doubles = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True),
@@ -17,10 +18,23 @@ doubles = st.one_of(
     st.sampled_from([0.0, -1.0, 5e-324, 1.7e308, float("nan"), float("inf")]),
 )
 GUARD = 8
+SIZES = {
+    "epdem_step_result": 3 * 8,
+    "epdem_impact_input": IMPACT_INPUT.itemsize,
+    "epdem_impact_output": IMPACT_OUTPUT.itemsize,
+}
 
 
 def pointer(array: np.ndarray):
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+@pytest.mark.parametrize("struct", SIZES)
+def test_the_structs_of_c_have_the_size_that_python_gives_them(struct):
+    """Else the ABI number was forgotten."""
+    size_of = library().epdem_size_of
+    size_of.restype, size_of.argtypes = ctypes.c_size_t, [ctypes.c_char_p]
+    assert size_of(struct.encode()) == SIZES[struct]
 
 
 @given(st.sampled_from(list(range(-2, 8))), doubles, st.lists(doubles, min_size=8, max_size=8), doubles, st.data())
@@ -29,16 +43,14 @@ def test_steps_and_backbones_have_a_status_or_are_finite(law, E_star, parameters
     largest, delta = (np.array(data.draw(st.lists(doubles, min_size=n, max_size=n)), float) for _ in range(2))
     numbers = np.array(parameters, float)
     radii = np.full(n, R_star)
-    out = (StepResult * (n + 1))()
-    out[n].force = 7.0
-    status = library().epdem_step(law, E_star, pointer(numbers), n, *map(pointer, (radii, largest, delta)), out)
-    assert status in (0, 1, 2, 3) and out[n].force == 7.0
+    out = np.full((n + 1, 3), 7.0)  # force, radius, delta_max
+    status = library().epdem_step(law, E_star, pointer(numbers), n, *map(pointer, (radii, largest, delta, out)))
+    assert status in (0, 1, 2, 3) and (out[n] == 7.0).all()
     assert status != (1 if law in range(len(declarations())) else 0)
     usual = 1e-9 <= E_star <= 1e30 and 1e-12 <= R_star <= 1e6 and ((numbers >= 1e-9) & (numbers <= 1e30)).all()
     usual = usual and ((largest >= 0) & (largest <= R_star)).all() and (np.abs(delta) <= R_star).all()
     if status == 0 and usual:
-        for k in range(n):
-            assert out[k].force >= 0.0 and out[k].radius >= 0.0 and out[k].delta_max >= 0.0
+        assert (out[:n] >= 0.0).all()
     columns = [np.full(n + GUARD, 7.0) for _ in range(4)]
     code = library().epdem_backbone(law, E_star, pointer(numbers), n, *map(pointer, (radii, delta, *columns)))
     assert code in (0, 1, 2, 3) and all((c[n:] == 7.0).all() for c in columns)

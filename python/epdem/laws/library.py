@@ -6,25 +6,18 @@ All values are SI. Arrays are numpy, float64, one-dimensional.
 
 import ctypes
 import math
-from ctypes import POINTER, Structure, c_char_p, c_double, c_int, c_size_t
+from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t
 from functools import cache
 from typing import Any, NotRequired, TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
-from ..base.declarations import declarations, library_path, load_library
-from ..errors import CaseError, EngineError
+from ..base.declarations import declarations, load_library
+from ..errors import CaseError
 
 Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
 _D = POINTER(c_double)
-
-
-class StepResult(Structure):
-    """`epdem_step_result` of the C interface."""
-
-    _fields_ = [("force", c_double), ("radius", c_double), ("delta_max", c_double)]
-
 
 IMPACT_INPUT = np.dtype(
     [(n, "f8") for n in ("R_star", "m_star", "speed", "time_step", "gap")] + [("steps", "i8"), ("viscous", "f8")],
@@ -44,9 +37,8 @@ _SIGNATURES = {
     ),
     "epdem_version": (c_char_p, []),
     "epdem_message": (c_char_p, [c_int]),
-    "epdem_size_of": (c_size_t, [c_char_p]),
     "epdem_viscous_number": (c_double, [c_double]),
-    "epdem_step": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, POINTER(StepResult)]),
+    "epdem_step": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, _D]),
     "epdem_backbone": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, _D, _D, _D]),
     "epdem_impacts": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p, c_size_t, _D, _D, _D]),
 }
@@ -59,15 +51,6 @@ def library() -> ctypes.CDLL:
     for name, (restype, argtypes) in _SIGNATURES.items():
         function = getattr(lib, name)
         function.restype, function.argtypes = restype, argtypes
-    sizes = {
-        b"epdem_step_result": ctypes.sizeof(StepResult),
-        b"epdem_impact_input": IMPACT_INPUT.itemsize,
-        b"epdem_impact_output": IMPACT_OUTPUT.itemsize,
-    }
-    for struct, size in sizes.items():
-        if lib.epdem_size_of(struct) != size:
-            found = lib.epdem_size_of(struct)
-            raise EngineError(f"{library_path()}: {struct.decode()} has {found} bytes, expected {size}")
     return lib
 
 
@@ -163,7 +146,7 @@ class Law:
         contacts = _columns(R_star, delta_max, delta)
         n = contacts[0].size
         out = np.empty((n, 3))
-        self.call("epdem_step", n, *map(pointer, contacts), out.ctypes.data_as(POINTER(StepResult)))
+        self.call("epdem_step", n, *map(pointer, (*contacts, out)))
         return out[:, 0], out[:, 1], out[:, 2]
 
     def backbone(self, *, R_star: npt.ArrayLike, delta: npt.ArrayLike) -> tuple[Array, Array, Array, Array]:
