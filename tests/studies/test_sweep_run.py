@@ -208,18 +208,18 @@ def test_a_process_that_dies_leaves_the_other_points_of_its_share(case, tmp_path
 
 
 def test_a_full_disk_stops_the_sweep_and_the_next_one_goes_on(case, tmp_path, monkeypatch):
-    out, real = tmp_path / "out", folder.atomic
+    out, real = tmp_path / "out", folder.write_text
     one = sweep(case, tmp_path / "whole").table
 
-    def full(path, **options):
+    def full(path, text, **options):
         if len(list(out.glob("points/*/point.json"))) >= 2:
             raise OSError(28, "No space left on device", str(path))
-        return real(path, **options)
+        return real(path, text, **options)
 
-    monkeypatch.setattr(folder, "atomic", full)
+    monkeypatch.setattr(folder, "write_text", full)
     with pytest.raises(OSError, match="No space left"):
         sweep(case, out, jobs=1)
-    monkeypatch.setattr(folder, "atomic", real)
+    monkeypatch.setattr(folder, "write_text", real)
     found = sweep(case, out, jobs=1)
     assert found.ran == 1 and found.table.equals(one)
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 
 import tomlkit
 
-from ..base.files import atomic
+from ..base.files import write_text
 from ..case import impact as impact_case
 from ..case import scene as scene_case
 from ..case.toml import LoadedCase, portable_text
@@ -57,8 +57,7 @@ class _File:
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
         path = take("path", path, Path)
-        with atomic(Path(path)) as temporary:
-            temporary.write_text(self.text, encoding="utf-8")
+        write_text(Path(path), self.text)
         return Path(path)
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> Self:

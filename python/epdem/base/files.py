@@ -60,11 +60,16 @@ def remove_stale(folder: Path) -> None:
             path.unlink()
 
 
+def write_text(path: Path, text: str, *, sync: bool = True) -> None:
+    """Write a text file as `atomic` does."""
+    with atomic(path, sync=sync) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
 def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
     """Write text files by their path below `folder`, which is made where it is missing."""
     for name, text in texts.items():
-        with atomic(folder / name, sync=False) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+        write_text(folder / name, text, sync=False)
     return [folder / name for name in texts]
 
 
@@ -103,8 +108,7 @@ class ResultsFolder:
     def mark(self, *, ended: bool) -> None:
         """Write the marker of the folder."""
         content = {"foreign": sorted(self.foreign), "versions": self.versions, "ended": ended}
-        with atomic(self.folder / MARKER) as temporary:
-            temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
+        write_text(self.folder / MARKER, json.dumps(content, indent=1))
 
     def remove(self, *patterns: str) -> None:
         """Remove the files of earlier runs whose path in the folder matches a pattern, and only these."""

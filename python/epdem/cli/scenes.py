@@ -88,14 +88,13 @@ def soften(
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
-    from ..base.files import atomic, refuse_existing
+    from ..base.files import refuse_existing, write_text
     from ..studies.soften import soften as twin_of
 
     target = out or case.parent / f"{case.stem}_soft{factor:g}.toml"
     twin = twin_of(case, factor, folder=target.parent)
     refuse_existing(target, force=force)
-    with atomic(target) as temporary:
-        temporary.write_text(twin.text, encoding="utf-8")
+    write_text(target, twin.text)
     if as_json:
         about = {name: value for name, value in asdict(twin).items() if name != "text"}
         print(json.dumps({"file": str(target)} | about, indent=1))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..base import __version__, paths
-from ..base.files import atomic
+from ..base.files import write_text
 from .chart import Chart, svg
 
 if TYPE_CHECKING:  # slow to import
@@ -151,6 +151,5 @@ def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:
         with path.open("rb") as stream:
             if f'content="{mark}"'.encode() in stream.read(HEAD):
                 return path
-    with atomic(path, sync=False) as temporary:
-        temporary.write_text(render(page(), mark), encoding="utf-8")
+    write_text(path, render(page(), mark), sync=False)
     return path

@@ -22,7 +22,7 @@ import pandas as pd
 import tomlkit
 
 from ...base import paths
-from ...base.files import MARKER, atomic, results_folder
+from ...base.files import MARKER, results_folder, write_text
 from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import file_names
@@ -127,8 +127,7 @@ def write(sweep: Sweep, folder: Path) -> None:
     """Store the definition in `folder`."""
     (folder / POINTS).mkdir(parents=True, exist_ok=True)
     (folder / POINTS / MARKER).write_text("{}", encoding="utf-8")  # each point has a marker: a job may run it alone
-    with atomic(folder / DEFINITION) as temporary:
-        temporary.write_text(json.dumps(asdict(sweep)), encoding="utf-8")
+    write_text(folder / DEFINITION, json.dumps(asdict(sweep)))
 
 
 def read(folder: Path) -> Sweep:
@@ -177,8 +176,7 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     place = point_folder(sweep, folder, number)
     place.mkdir(parents=True, exist_ok=True)
     (place / FINISHED).unlink(missing_ok=True)
-    with atomic(place / CASE, sync=False) as temporary:
-        temporary.write_text(sweep.text(number), encoding="utf-8")
+    write_text(place / CASE, sweep.text(number), sync=False)
     array, task = os.environ.get("SLURM_ARRAY_JOB_ID"), os.environ.get("SLURM_ARRAY_TASK_ID")
     about = {
         "state": RUNNING,
@@ -204,8 +202,7 @@ def end(
         "reason": reason,
         "seconds": max(time.time() - about["begin"], 0.0),
     }
-    with atomic(place / FINISHED, sync=False) as temporary:
-        temporary.write_text(json.dumps(about | state | {"rows": rows or {}}), encoding="utf-8")
+    write_text(place / FINISHED, json.dumps(about | state | {"rows": rows or {}}), sync=False)
     (place / STARTED).unlink(missing_ok=True)
 
 
@@ -215,8 +212,7 @@ def write_stages(place: Path, stages: dict[str, Stage]) -> None:
         name: {"key": s.inputs.key, "seconds": s.seconds, "impacts": s.tables["impacts"].to_dict("list")}
         for name, s in stages.items()
     }
-    with atomic(place / STAGES, sync=False) as temporary:
-        temporary.write_text(json.dumps(content), encoding="utf-8")
+    write_text(place / STAGES, json.dumps(content), sync=False)
 
 
 def read_stages(place: Path) -> dict[str, Stage]:

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...base.files import LOCK, atomic
+from ...base.files import LOCK, write_text
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from .folder import Sweep
@@ -134,8 +134,7 @@ def run_jobs(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) 
         (store.point_folder(sweep, folder, n) / store.FINISHED).unlink(missing_ok=True)
     if new:
         jobs |= _submit(sweep, folder, new, given)
-        with atomic(folder / JOBS) as temporary:
-            temporary.write_text(json.dumps(jobs), encoding="utf-8")
+        write_text(folder / JOBS, json.dumps(jobs))
     yield from _wait(sweep, folder, jobs)
 
 
