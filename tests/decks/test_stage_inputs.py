@@ -47,8 +47,7 @@ def product(tmp_path, monkeypatch):
     monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
     monkeypatch.setattr(paths, "beside", lambda name: tmp_path / name)
     yield tmp_path, names
-    for function in (paths.library_hash, paths.product_hash):
-        function.cache_clear()
+    paths.product_hash.cache_clear()
 
 
 @pytest.mark.parametrize("changed", range(6))
@@ -56,8 +55,7 @@ def test_a_change_of_the_product_is_a_new_hash(product, changed):
     folder, names = product
 
     def hashed():
-        for function in (paths.library_hash, paths.product_hash):
-            function.cache_clear()
+        paths.product_hash.cache_clear()
         return paths.product_hash()
 
     first = hashed()
@@ -123,7 +121,6 @@ def test_another_product_with_the_same_files_runs_nothing_again(tmp_path, monkey
     tool = Recorded(tmp_path)
     assert reruns(tmp_path, tool)
     monkeypatch.setattr(paths, "product_hash", lambda: "another page")
-    monkeypatch.setattr(paths, "library_hash", lambda: "another host's plugin")
     assert not reruns(tmp_path, tool)
 
 

@@ -111,8 +111,6 @@ def test_programs_that_are_not_there(tmp_path, monkeypatch):
     monkeypatch.setattr(paths, "_first", lambda *candidates: None)
     with says("templates not found beside the package; install epdem again"):
         paths.beside.__wrapped__("templates")
-    with says(r"C\+\+ sources not found beside the package; install epdem again"):
-        paths.cpp_sources.__wrapped__()
 
 
 def test_clusters_that_do_not_answer(tmp_path, monkeypatch):

@@ -11,13 +11,13 @@ CODE = (".hpp", ".cpp", ".txt")
 
 def yade() -> dict[Path, Path]:
     """The module epdem_yade: adapter, laws, licences."""
-    adapter, laws = paths.cpp_sources("yade")
+    adapter, laws = paths.beside("cpp_contact/yade"), paths.beside(paths.LAWS)
     found = {f.relative_to(adapter): f for f in adapter.iterdir() if f.suffix in (*CODE, ".py")}
     return found | {f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")} | _licences()
 
 
 def _licences() -> dict[Path, Path]:
-    return {Path("LICENSES") / f.name: f for f in paths.licences()}
+    return {Path("LICENSES") / f.name: f for f in paths.beside("LICENSES").iterdir()}
 
 
 def yade_commands(folder: Path) -> list[str]:
@@ -32,7 +32,7 @@ def yade_commands(folder: Path) -> list[str]:
 
 def lammps() -> dict[Path, Path]:
     """The plugin epdemplugin.so: plugin, kernels, laws, licences."""
-    plugin, laws = paths.cpp_sources("lammps")
+    plugin, laws = paths.beside("cpp_contact/lammps"), paths.beside(paths.LAWS)
     found = {Path("CMakeLists.txt"): plugin / "export" / "CMakeLists.txt"}
     for source in (plugin, plugin.parent / "kernels"):
         here = Path("cpp_contact") / source.name

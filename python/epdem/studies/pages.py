@@ -11,7 +11,7 @@ import pandas as pd
 
 from ..base import __version__
 from ..base.files import claim
-from ..base.paths import library_hash, product_hash
+from ..base.paths import product_hash
 from ..base.tables import unit_of
 from ..engines import texts_with_reasons
 from ..engines.citations import citations
@@ -63,7 +63,7 @@ def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], 
 def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
     """Versions of epdem and the engines, and hashes of the inputs; `about`: attributes of a results file."""
     versions = {k.removeprefix("version_"): str(v) for k, v in about.items() if k.startswith("version_")}
-    ours = {"epdem": f"{__version__}, sources {product_hash()[:16]}, compiled parts {library_hash()[:16]}"}
+    ours = {"epdem": f"{__version__}, sources and compiled parts {product_hash()[:16]}"}
     return Facts("Versions and hashes", ours | versions | {f"inputs of {k}": str(v) for k, v in hashes.items()})
 
 

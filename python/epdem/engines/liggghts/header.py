@@ -66,7 +66,7 @@ def files(pfm: bool = False) -> dict[str, str]:
     is the licence of the physics; a tree has its own copy of the other. Raises EngineError if the sources are not
     installed.
     """
-    host, laws = paths.cpp_sources()
+    host, laws = paths.beside("cpp_contact/liggghts"), paths.beside(paths.LAWS)
     kernels, roots = host.parent / "kernels", (host, laws, host.parent)
     if pfm:
         sources = [host / PFM / "models.cpp", host / "materials.cpp", host / "cohesion.cpp"]
@@ -83,7 +83,7 @@ def files(pfm: bool = False) -> dict[str, str]:
 
 
 def _licence() -> dict[str, str]:
-    file = paths.licences()[0]
+    file = paths.beside("LICENSES") / "BSD-3-Clause.txt"
     return {f"{NAME}_{file.name}": file.read_text(encoding="utf-8")}
 
 
