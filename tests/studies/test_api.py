@@ -131,7 +131,7 @@ def test_compaction_and_index_are_replaced_like_all_keys(ball):
 
 def test_cases_do_not_change_and_show_themselves(ball):
     known = {ball: 1, ball.replace({"impact.body.radius": 0.02}): 2}
-    assert known[ball.replace({"impact.body.radius": 0.01})] == 1 and len({hash(case) for case in known}) == 2
+    assert known[ball.replace({"impact.body.radius": 0.01})] == 1 and len(known) == 2
     for path in (ROOT / "cases").glob("*.toml"):
         case = (Scene if "[scene]" in path.read_text() else Case).from_toml(path)
         assert len({case, case.replace({})}) == 1

@@ -2,7 +2,7 @@
 """Common fields of cases of impacts and scenes: quantities, names, materials, law, dashpot; SI values out."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Generic, Literal, Self, TypeVar
+from typing import Annotated, Generic, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, model_validator
@@ -147,17 +147,6 @@ class Material(Frozen):
         if len(given) > 1:
             raise ValueError(f"both {given[0]} and {given[1]} are given, each the strength; keep one")
         return self
-
-
-class LawChoice(BaseModel):
-    """The law by name; its parameters are checked against the law itself, see case.law."""
-
-    model_config = ConfigDict(frozen=True, extra="allow", strict=True)
-    name: Name
-
-    def parameters(self) -> dict[str, Any]:
-        """The keys beside the name, as written."""
-        return dict(self.model_extra or {})
 
 
 class Viscous(Frozen):

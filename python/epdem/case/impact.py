@@ -16,7 +16,6 @@ from .fields import (
     Frozen,
     Header,
     Interval,
-    LawChoice,
     Length,
     Line,
     Material,
@@ -28,7 +27,7 @@ from .fields import (
     Viscous,
     by_shape,
 )
-from .law import check_law
+from .law import LawChoice, check_law
 from .messages import explain
 from .toml import read_toml, with_library
 
@@ -201,6 +200,7 @@ class Case(Frozen):
             kinds = "speeds x angles x spins" if self.impact.oblique else "speeds"
             raise ValueError(f"{impacts} impacts ({kinds} x phases), at most {MAX_IMPACTS}; lower count or phases")
         self._friction()
+        check_law(self.law, self.materials)
         return self
 
     def _friction(self) -> None:
@@ -223,11 +223,9 @@ def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
     data = with_library(data, path)
     try:
-        case = Case.model_validate(data)
+        return Case.model_validate(data)
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "impact")) from None
-    check_law(case.law, case.materials, path)
-    return case
 
 
 def load(path: Path | str) -> Case:

@@ -2,17 +2,35 @@
 """The [law] of a case: its numbers in SI, each checked against the declaration of the law."""
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
+
+from pydantic import BaseModel, ConfigDict
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, find_law
 from ..theory.cavity import FINITE_STRAIN
-from .fields import LawChoice, Material
-from .messages import cut_quotes
+from .fields import Material, Name
 from .units import read_number
 
 EXPONENT, INDEX = "hardening_exponent", "meyer_index"
+
+
+class LawChoice(BaseModel):
+    """The law by name, with its parameters as written."""
+
+    model_config = ConfigDict(frozen=True, extra="allow", strict=True)
+    name: Name
+
+    def parameters(self) -> dict[str, Any]:
+        """The keys beside the name, as written."""
+        return dict(self.model_extra or {})
+
+    @cached_property
+    def numbers(self) -> LawNumbers:
+        """The law before its bodies. Raises CaseError."""
+        return law_numbers(self.name, self.parameters())
 
 
 def law_keys(law: Declaration) -> dict[str, str | None]:
@@ -73,18 +91,15 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     )
 
 
-def check_law(law: LawChoice, materials: Mapping[str, Material], place: object) -> None:
-    """Raise CaseError, which begins with `place`, for keys and values that the law does not have, and for a strength
-    that the law gives all bodies beside a material's own hardness or yield_ratio."""
-    try:
-        numbers = law_numbers(law.name, law.parameters())
-        for name, m in materials.items():
-            own = "hardness" if m.hardness is not None else "yield_ratio" if m.yield_ratio is not None else ""
-            if own and numbers.absolute is not None:
-                key = find_law(law.name).strength
-                raise CaseError(f"both law.{key} and materials.{name}.{own} are given, each the strength; keep one")
-    except CaseError as error:
-        raise CaseError(f"{place}: {cut_quotes(str(error))}") from None
+def check_law(law: LawChoice, materials: Mapping[str, Material]) -> None:
+    """Raise CaseError for keys and values that the law does not have, and for a strength that the law gives all bodies
+    beside a material's own hardness or yield_ratio."""
+    numbers = law.numbers
+    for name, m in materials.items():
+        own = "hardness" if m.hardness is not None else "yield_ratio" if m.yield_ratio is not None else ""
+        if own and numbers.absolute is not None:
+            key = find_law(law.name).strength
+            raise CaseError(f"both law.{key} and materials.{name}.{own} are given, each the strength; keep one")
 
 
 def _without_index(given: dict[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,6 @@ from .fields import (
     Coefficient,
     Frozen,
     Header,
-    LawChoice,
     Length,
     Material,
     Name,
@@ -23,12 +22,12 @@ from .fields import (
     Viscous,
 )
 from .kinds import Keys, parts, read_scene
-from .law import check_law
+from .law import LawChoice, check_law
 from .messages import explain
 from .outputs import MeasuredDensities
 from .parts import Parts
 from .sizes import Share, context
-from .toml import KIND, error_context, read_toml, with_library
+from .toml import KIND, read_toml, with_library
 from .walls import PartName, Time
 
 
@@ -151,6 +150,8 @@ class SceneCase(Frozen):
                     raise ValueError(f"contact.pairs: {name!r} is neither a material nor 'wall'")
             if pair.restitution is not None and self.viscous is None:
                 raise ValueError("contact.pairs.restitution: there is no dashpot; add [viscous], for all other pairs")
+        check_law(self.law, self.materials)
+        assert self.parts  # values that do not fit together are refused here
         return self
 
     @property
@@ -177,17 +178,11 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
     data = with_library(data, path)
     try:
-        case = SceneCase.model_validate(data, context=context(path))
+        return SceneCase.model_validate(data, context=context(path))
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "scene")) from None
-    check_law(case.law, case.materials, path)
-    with error_context(path):
-        assert case.parts  # values that do not fit together are refused here
-    return case
 
 
 def load(path: Path | str) -> SceneCase:
     """The scene in a file. Raises CaseError."""
-    data = read_toml(path)
-    with error_context(path):
-        return parse(data, path)
+    return parse(read_toml(path), path)

@@ -12,7 +12,6 @@ import numpy as np
 
 from ..case.fields import Material, Tangential
 from ..case.impact import RIGID, Case, Check, Numerics, Rate, parse
-from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
 from ..laws.library import Law
@@ -209,7 +208,7 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     """A case as physics; another `law` than the case's has its default numbers. Raises CaseError."""
     body, target = bodies(case)
     speed, angle, spin = case.impact.rows()
-    numbers = law_numbers(case.law.name, case.law.parameters())
+    numbers = case.law.numbers
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
         numbers = replace(default_numbers(law), adhesion=numbers.adhesion if find_law(law).adheres else None)
     spec = pair_of(numbers, body, target)

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 from ..base.declarations import declarations
 from ..case.fields import NODES, Tangential
-from ..case.law import law_numbers
 from ..case.scene import Rolling, SceneCase
 from ..case.units import read_number
 from ..errors import CaseError
-from ..laws.strengths import LawNumbers, LawSpec, find_law, own_ratios
+from ..laws.strengths import LawSpec, find_law, own_ratios
 from ..theory.pair import E_star
 
 WALL = "wall"
@@ -118,7 +117,7 @@ def model(case: SceneCase) -> Model:
     wall_types[""] = wall_types[walls[0]] if walls else 1
     result = Model(
         law=case.law.name,
-        parameters=numbers(case).ratios,
+        parameters=case.law.numbers.ratios,
         types=tuple(types),
         wall_types=wall_types,
         friction=tuple(tuple(_friction(case, a, b) for b in types) for a in types),
@@ -128,7 +127,7 @@ def model(case: SceneCase) -> Model:
         rolling=contact.rolling,
         cohesion=contact.cohesion,
         adhesion=_adhesion(case, types),
-        compaction=numbers(case).compaction,
+        compaction=case.law.numbers.compaction,
     )
     if result.compaction and contact.cohesion is not None:
         raise CaseError("contact.cohesion: contacts with law.compaction have no cohesion; remove one of them")
@@ -183,18 +182,12 @@ def _own(case: SceneCase, a: Type, b: Type, value: str) -> float | None:
     return None
 
 
-def numbers(case: SceneCase) -> LawNumbers:
-    """The scene's law before its bodies. Raises CaseError."""
-    return law_numbers(case.law.name, case.law.parameters())
-
-
 def strengths(case: SceneCase) -> dict[str, float]:
     """The law's strength [Pa] of every material, inf for a law that never yields. Raises CaseError.
 
     The key of the material, else the value of the law for all.
     """
-    law = numbers(case)
-    strength = find_law(law.name).strength
+    strength = find_law(case.law.name).strength
     strengths = {}
     for name, material in case.materials.items():
         extra = dict(material.model_extra or {})
@@ -203,17 +196,17 @@ def strengths(case: SceneCase) -> dict[str, float]:
             own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
         for key in extra:
             raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
-        strengths[name] = law.strength(name, material, own)
+        strengths[name] = case.law.numbers.strength(name, material, own)
     return strengths
 
 
 def work_of_adhesion(case: SceneCase, a: str, b: str) -> float | None:
     """Gamma of two materials [J/m^2]; None for a law without adhesion. Raises CaseError."""
-    return numbers(case).work_of_adhesion({name: case.materials[name].surface_energy for name in (a, b)})
+    return case.law.numbers.work_of_adhesion({name: case.materials[name].surface_energy for name in (a, b)})
 
 
 def pair_law(case: SceneCase, a: str, b: str) -> tuple[LawSpec, float]:
     """(the law of a contact between two materials, its E* [Pa])."""
     strong, first, second = strengths(case), case.materials[a], case.materials[b]
     elastic = (first.young_modulus, first.poisson_ratio, second.young_modulus, second.poisson_ratio)
-    return numbers(case).pair(strong[a], strong[b], work_of_adhesion(case, a, b)), float(E_star(*elastic))
+    return case.law.numbers.pair(strong[a], strong[b], work_of_adhesion(case, a, b)), float(E_star(*elastic))

@@ -13,7 +13,7 @@ from ..impacts.experiment import Body, Experiment, plane, sphere
 from ..impacts.plan import search, stability_limit
 from ..impacts.prediction import Prediction, predict
 from ..theory import timestep as times
-from .model import model, numbers, pair_law
+from .model import model, pair_law
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
 
@@ -65,7 +65,7 @@ def _impacts(case: SceneCase, density: float) -> Iterator[tuple[Experiment, Pred
         for other in sorted({m for m, _ in bodies} | {*case.parts.wall_materials}):
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
-            if not numbers(case).compaction:
+            if not case.law.numbers.compaction:
                 yield x, prediction, stability_limit(x, float(prediction.overlap_max.max())), 1.0
                 continue
             a = max(float(prediction.radius_max.max()), float(times.pressed_radius(max(density, times.LOOSE))) * radius)

@@ -17,10 +17,10 @@ import tomlkit
 from pydantic import BaseModel
 
 from ...base.declarations import Declaration, declarations
-from ...case.fields import LawChoice, Material, Quantity
+from ...case.fields import Material, Quantity
 from ...case.impact import Case
 from ...case.kinds import Keys, model_of
-from ...case.law import alternatives, law_keys
+from ...case.law import LawChoice, alternatives, law_keys
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...case.sizes import csv_table
 from ...case.toml import strength_keys
