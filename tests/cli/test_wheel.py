@@ -82,7 +82,7 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
         "cases/steel_wall.toml",
         "data/restitution/leeb_D.csv",
         "cpp_contact/liggghts/register.cpp",
-        "include/epdem/laws.hpp",
+        "cpp_contact/include/epdem/laws.hpp",
     ):
         assert f"epdem/{name}" in names
     for licence in ("BSD-3-Clause", "GPL-2.0-or-later"):
