@@ -11,6 +11,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
+from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
@@ -51,7 +52,7 @@ def test_a_continued_press_ends_bitwise_where_the_uninterrupted_one_does(tmp_pat
     launcher.run("in.scene", tmp_path)
 
     def last():
-        table = tables.particles(p, tmp_path, without=range(p.steps))
+        table = tables.particles(Frames(p, tmp_path, tables.kinds(p), range(p.steps)))
         return table[table["step"] == p.steps].to_numpy()
 
     whole = last()

@@ -14,6 +14,7 @@ from epdem.base import files, paths, processes
 from epdem.case import impact
 from epdem.case.toml import read_toml
 from epdem.engines import engine, log
+from epdem.engines.frames import Frames
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
 from epdem.engines.liggghts import dump, launcher, own_decks
@@ -89,19 +90,20 @@ def test_frames_and_rows_of_scenes(tmp_path):
     with says("the row of step 7 is damaged; run the case again"):
         yade_tables.rows(q, out)
     with says(r"particles.0.npy: incomplete \(.*\); run the case again"):
-        yade_tables.particles(q, tmp_path)
+        yade_tables.particles(Frames(q, tmp_path, yade_tables.kinds(q)))
     shutil.copytree(STORED / "settle", tmp_path / "run")
-    whole = scene_tables.particles(p, tmp_path / "run")
+    whole = scene_tables.particles(Frames(p, tmp_path / "run", scene_tables.kinds(p)))
     with says("the frame of step 1250 is damaged; run the case again"):
         columns.whole(p, whole.assign(radius=-1.0), tmp_path)
-    raw = pd.DataFrame([{"step": 1250, "wall": "", "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}])
+    numbers = {"step": 1250, "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}
+    raw = pd.DataFrame([numbers | {"wall": ""} | dict.fromkeys(columns.FORCE, 0.0)])
     with says("the contacts of step 1250 are damaged: no such spheres; run the case again"):
         columns.complete(p, raw, whole, tmp_path)
     shutil.copy(STORED / "hopper/particles.2000.bin", tmp_path / "two.bin")
     with (tmp_path / "two.bin").open("ab") as stream:
         stream.write((STORED / "hopper/particles.2000.bin").read_bytes())
     with says("two.bin: not one frame of 10 columns; run the case again"):
-        scene_tables._frame(tmp_path / "two.bin", 10)
+        scene_tables._frame(tmp_path / "two.bin", list("0123456789"))
 
 
 def test_programs_that_are_not_there(tmp_path, monkeypatch):

@@ -11,6 +11,7 @@ from scene_runs import restart_steps, run, write_case, write_deck
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log
+from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
@@ -190,13 +191,13 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     p = write_deck(parse(data), tmp_path)
     launcher.run("in.scene", tmp_path)
     ends = log.ends(tmp_path / launcher.OUT)
-    whole = tables.particles(p.with_ends(ends), tmp_path)
+    whole = tables.particles(Frames(p.with_ends(ends), tmp_path, tables.kinds(p)))
     files = restart_steps(tmp_path)
     for step in files:
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
         assert log.ends(tmp_path / launcher.OUT) == ends
-        assert tables.particles(p.with_ends(ends), tmp_path).equals(whole)
+        assert tables.particles(Frames(p.with_ends(ends), tmp_path, tables.kinds(p))).equals(whole)
     assert {ends["settle"], ends["more"]} <= {*files}
 
 

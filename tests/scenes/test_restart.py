@@ -21,6 +21,7 @@ from epdem.base.files import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
 from epdem.engines import log, restarts
+from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
@@ -38,7 +39,7 @@ def short(path: Path):
 
 def last_frame(p: ScenePlan, folder: Path) -> np.ndarray:
     p = p.with_ends(log.ends(folder / launcher.OUT)) if p.ends_early else p
-    return tables.particles(p, folder, without=p.frame_steps(p.frames)[:-1]).to_numpy()
+    return tables.particles(Frames(p, folder, tables.kinds(p), p.frame_steps(p.frames)[:-1])).to_numpy()
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
@@ -223,7 +224,7 @@ def test_without_a_restart_file_nothing_is_continued(tmp_path):
     assert not (tmp_path / "out").exists()
     p = write_deck(load(path), tmp_path / "empty")
     with pytest.raises(CaseError, match="no restart file"):
-        restarts.choose(p, tmp_path / "empty", tmp_path / "empty" / launcher.OUT, tables.damaged)
+        restarts.choose(Frames(p, tmp_path / "empty", tables.kinds(p)), tmp_path / "empty" / launcher.OUT)
 
 
 def steps_of(folder: Path, pattern: str) -> list[int]:
@@ -250,7 +251,7 @@ def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(
     else:
         frame.write_bytes(frame.read_bytes()[:-100])
     if place.startswith("after"):
-        assert restarts.choose(p, out, out / launcher.OUT, tables.damaged) == (older, [])
+        assert restarts.choose(Frames(p, out, tables.kinds(p)), out / launcher.OUT) == (older, [])
         return
     outcome = run(path, out=out, resume=True, force=True)  # a file that was changed may be the user's
     assert [w for w in outcome.warnings if f"frames of step {lost} are missing or not whole" in w]

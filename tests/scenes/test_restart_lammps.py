@@ -10,6 +10,7 @@ from test_parts_motions import BOX, PLATE
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log, scene_engine
+from epdem.engines.frames import Frames
 from epdem.engines.lammps import launcher, resume
 from epdem.engines.lammps import tables as tables
 from epdem.errors import CaseError
@@ -57,7 +58,7 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
     ends = log.ends(out)
     assert not log.not_reached(out) and [*ends] == [phase.name for phase in p.phases]
     ended = p.with_ends(ends)
-    whole = tables.particles(ended, tmp_path), tables.rows(ended, out)
+    whole = tables.particles(Frames(ended, tmp_path, tables.kinds(ended))), tables.rows(ended, out)
     assert (whole[1]["lid_force_z"] > 0.1).any()
     steps = restart_steps(tmp_path)[:-1]
     at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")}
@@ -66,7 +67,7 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
         assert log.ends(out) == ends, step
-        assert tables.particles(ended, tmp_path).equals(whole[0]), step
+        assert tables.particles(Frames(ended, tmp_path, tables.kinds(ended))).equals(whole[0]), step
         again = tables.rows(ended, out)
         np.testing.assert_array_equal(again, whole[1], err_msg=str(step))
 

@@ -12,6 +12,7 @@ from stored_runs import RUNS, STORED, data_of, planned
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
+from epdem.engines.frames import Frames
 from epdem.engines.liggghts import tables as scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
@@ -195,13 +196,13 @@ def test_a_frame_that_is_not_whole_is_an_error_that_names_it_and_can_be_left_out
     shutil.copytree(STORED / "drum", tmp_path, dirs_exist_ok=True)
     (path,) = tmp_path.glob(f"{kind}.{last}.*")
     path.write_bytes(path.read_bytes()[:-cut])
-    assert scene_tables.damaged(p, tmp_path, p.steps) == [last]
+    assert Frames(p, tmp_path, scene_tables.kinds(p)).damaged(p.steps) == [last]
     with pytest.raises(EngineError, match=path.name):
         engine.read(p, tmp_path)
     rest = engine.read(p, tmp_path, without=[last])
     assert rest["particles"]["step"].max() == rest["contacts"]["step"].max() == 6000
     path.unlink()
-    assert scene_tables.damaged(p, tmp_path, p.steps) == [last]
+    assert Frames(p, tmp_path, scene_tables.kinds(p)).damaged(p.steps) == [last]
 
 
 @pytest.mark.parametrize("kind", ["particles", "contacts"])

@@ -2,18 +2,16 @@
 """Base of LIGGGHTS, YADE and LAMMPS as engines: a deck in a folder, of impacts or of a scene."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
 from typing import Any
-
-import pandas as pd
 
 from ..base import rendering as decks
 from ..base.files import stored_results
 from ..case import impact, scene
 from ..case.toml import error_context, read_toml
-from ..errors import CaseError, EngineError
+from ..errors import CaseError
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
@@ -25,6 +23,7 @@ from ..scenes.model import Model
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
 from . import log
+from .frames import Frames
 from .input_script import data_text
 from .restarts import choose, pruning
 
@@ -44,7 +43,7 @@ class Host(Engine[Any, Any]):
         *("restart.*.bin", "in.resume"),
     )
     scene_deck: ModuleType  # deck and files of a scene
-    # trajectory of impacts; rows, particles, contact_table and wall_table of a scene from its files
+    # trajectory of impacts; kinds of frames of a scene, from which particles, contact_table and wall_table; rows
     tables: ModuleType
     resumed: ModuleType  # of an engine with Feature.RESTART: write_resume
 
@@ -99,7 +98,7 @@ class Host(Engine[Any, Any]):
         return found
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        step, lost = choose(job, folder, folder / self.launcher.OUT, self.tables.damaged)
+        step, lost = choose(Frames(job, folder, self.tables.kinds(job)), folder / self.launcher.OUT)
         script = self.resumed.write_resume(job, folder, step)
         self.start(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
         return self.read(job, folder, without=lost), Resumed(step, lost)
@@ -111,13 +110,14 @@ class Host(Engine[Any, Any]):
         """
         out, own = folder / self.launcher.OUT, self.tables
         plan = plan.with_ends(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
+        frames = Frames(plan, folder, own.kinds(plan), without)
         found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
         if plan.frames:
-            found["particles"] = own.particles(plan, folder, without)
+            found["particles"] = own.particles(frames)
         if plan.contacts:
-            found["contacts"] = own.contact_table(plan, folder, found["particles"], without)
+            found["contacts"] = own.contact_table(frames, found["particles"])
         if plan.stress_walls:
-            found["walls"] = own.wall_table(plan, folder, without)
+            found["walls"] = own.wall_table(frames)
         return found | {"phases": plan.phase_table}
 
 
@@ -136,31 +136,3 @@ def refuse(place: str, value: object, reason: str) -> None:
     if value:
         shown = "" if value is True else f" = {value!r}"
         raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
-
-
-def frames(
-    p: ScenePlan,
-    folder: Path,
-    pattern: str,
-    every: int,
-    read: Callable[[Path], pd.DataFrame],
-    without: Collection[int] = (),
-) -> pd.DataFrame:
-    """The frames that a run of this plan writes, one below the other; other files of such names are the user's.
-
-    pattern: name of the file of a step; read: the table of one file; without: steps that are left out. Raises
-    EngineError for a frame that is missing or not whole.
-    """
-    tables = []
-    for step in p.frame_steps(every):
-        path = folder / pattern.format(step)
-        try:
-            if step not in without:
-                tables.append(read(path))
-                tables[-1].insert(0, "step", step)
-        except EngineError:
-            raise
-        except Exception as error:  # of a damaged head numpy says almost anything
-            reason = " ".join(str(error).split()) or type(error).__name__
-            raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
-    return pd.concat(tables, ignore_index=True)

@@ -2,7 +2,6 @@
 """Restart files of LIGGGHTS and LAMMPS: which of them are whole, and from which one a run continues."""
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +12,7 @@ from ..errors import CaseError
 from ..jobs.engine import Report
 from ..scenes.plan import ScenePlan
 from . import log
+from .frames import Frames
 from .input_script import StopCondition
 
 
@@ -48,19 +48,18 @@ def pruning(folder: Path, report: Report) -> Report:
     return row
 
 
-def choose(
-    p: ScenePlan, folder: Path, out: Path, damaged: Callable[[ScenePlan, Path, int], list[int]]
-) -> tuple[int, list[int]]:
+def choose(frames: Frames, out: Path) -> tuple[int, list[int]]:
     """(step to continue from, steps of earlier frames that are missing or not whole and will stay so).
 
     The newest restart file from which the damaged frames are written again; if there is none, the newest. Raises
     CaseError if there is none at all.
     """
+    p, folder = frames.plan, frames.folder
     p = p.with_ends(log.ends(out)) if p.ends_early else p
     steps = [step for step in whole_restarts(folder, out) if step < p.steps]  # at the end nothing is left to run
     if not steps:
         raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
-    lost = damaged(p, folder, steps[-1])
+    lost = replace(frames, plan=p).damaged(steps[-1])
     repairing = [step for step in steps if not lost or step <= lost[0]]
     step = repairing[-1] if repairing else steps[-1]
     return step, [s for s in lost if s < step]

@@ -205,14 +205,20 @@ def contact_columns(p: ScenePlan) -> list[str]:
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """One row per contact and frame, with all that follows by the law, sorted; SI.
 
-    raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall; with
-    adhesion also whether the bodies are attached, for they may overlap in a dent without a contact; with compaction
-    added_overlap, with which the law's overlaps are larger than those of the spheres, and screening; the force on i,
-    and at walls the normal.
+    raw: step, wall, i, j, overlap, delta_max, force on i; i and j are ids of spheres in any order, or j = 0 and `wall`
+    the name of a wall, where the normal is given; with adhesion also whether the bodies are attached, for they may
+    overlap in a dent without a contact; with compaction added_overlap, with which the law's overlaps are larger than
+    those of the spheres, and screening. What is only near, neither in contact nor attached, is left out.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
+    touch = raw["overlap"] + raw.get("added_overlap", 0.0) > 0
+    attached = raw["attached"] > 0 if p.model.adheres else touch
+    raw = raw.assign(attached=attached)[touch | attached]
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
+    turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary
+    raw.loc[turned, FORCE] *= -1.0
+    raw = raw.assign(i=raw["i"].where(~turned, raw["j"]), j=raw["j"].where(~turned, raw["i"]))
     known = spheres.set_index(["step", "id"])[["radius", "type", *"xyz"]]
     first = known.reindex(pd.MultiIndex.from_frame(raw[["step", "i"]].astype("int64")))
     second = known.reindex(pd.MultiIndex.from_frame(raw[["step", "j"]].astype("int64")))
@@ -225,7 +231,6 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     type_j = np.where(raw["j"] == 0, raw["wall"].map(p.wall_types), second["type"]).astype(int)
     radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)
     R_star = 1.0 / (1.0 / radius_i + 1.0 / radius_j)
-    attached = raw["attached"].to_numpy(bool) if "attached" in raw else np.ones(len(raw), bool)
     added, screening = (raw[name].to_numpy() for name in GROWTH) if p.model.compaction else (0.0, np.ones(len(raw)))
     overlap, largest = raw["overlap"].to_numpy() + added, raw["delta_max"].to_numpy() + added
     screening = np.where(screening > 0.0, screening, 1.0)  # 0: of a new contact
@@ -236,7 +241,7 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         apart[:, :2] -= sides * np.round(apart[:, :2] / sides)
     at_walls = raw[NORMAL].to_numpy(float) if NORMAL[0] in raw else np.zeros((len(raw), 3))
     raw = raw.assign(**dict(zip(NORMAL, np.where(between, _unit(apart), at_walls).T, strict=True)))
-    law = energies(p, type_i, type_j, R_star, radius_i, overlap, largest, attached, screening)
+    law = energies(p, type_i, type_j, R_star, radius_i, overlap, largest, raw["attached"].to_numpy(), screening)
     table = raw[contact_columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)

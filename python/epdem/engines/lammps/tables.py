@@ -2,7 +2,6 @@
 """The dumps of impacts and the tables of a scene from LAMMPS's files. Only this module reads their formats."""
 
 import math
-from collections.abc import Collection
 from functools import partial
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
-from ..host import frames
+from ..frames import Frames, Kinds
 from ..input_script import torque_origin
 from .deck import END, PATH, contact_walls
 from .launcher import OUT
@@ -58,47 +57,24 @@ def _frame(path: Path, names: list[str]) -> pd.DataFrame:
     return pd.DataFrame(values, columns=names)
 
 
-def _kinds(p: ScenePlan) -> dict[str, tuple[int, list[str]]]:
-    """Steps between two frames and columns of each kind of file."""
+def kinds(p: ScenePlan) -> Kinds:
+    """The files of frames: spheres, contacts between them, and with each wall."""
     values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
-    kinds = {"particles": (p.frames, columns.columns_of_frames(p)), "contacts": (p.contacts, ["one", "two", *values])}
+    found = {"particles": (p.frames, columns.columns_of_frames(p)), "contacts": (p.contacts, ["i", "j", *values])}
     for name in contact_walls(p):
-        kinds[f"contacts_{wall_id(name)}"] = p.contacts, ["i", *values, *columns.NORMAL]
-    return {kind: (every, names) for kind, (every, names) in kinds.items() if every}
+        found[f"contacts_{wall_id(name)}"] = p.contacts, ["i", *values, *columns.NORMAL]
+    return {k: (f"{k}.{{}}.txt", every, partial(_frame, names=names)) for k, (every, names) in found.items() if every}
 
 
-def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
-    """Steps up to `upto` of which a frame is missing or not whole."""
-    steps = set()
-    for kind, (every, names) in _kinds(p).items():
-        for step in (n for n in p.frame_steps(every) if n <= upto):
-            try:
-                _frame(folder / f"{kind}.{step}.txt", names)
-            except (OSError, ValueError):
-                steps.add(step)
-    return sorted(steps)
-
-
-def _frames(p: ScenePlan, folder: Path, kind: str, without: Collection[int]) -> pd.DataFrame:
-    every, names = _kinds(p)[kind]
-    return frames(p, folder, f"{kind}.{{}}.txt", every, partial(_frame, names=names), without)
-
-
-def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
+def particles(frames: Frames) -> pd.DataFrame:
     """Every sphere of every frame."""
-    return columns.whole(p, _frames(p, folder, "particles", without), folder)
+    return columns.whole(frames.plan, frames.table("particles"), frames.folder)
 
 
-def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
+def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame."""
-    pairs = _frames(p, folder, "contacts", without)
-    pairs.loc[pairs["one"] > pairs["two"], columns.FORCE] *= -1.0
-    pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
-    across = pairs["added_overlap"] if p.model.compaction else 0.0
-    found = [pairs[(pairs["overlap"] + across > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
-    for name in contact_walls(p):
-        table = _frames(p, folder, f"contacts_{wall_id(name)}", without)
-        found.append(table.assign(wall=name, j=0))
+    found = [frames.table("contacts").assign(wall="")]
+    for name in contact_walls(frames.plan):
+        found.append(frames.table(f"contacts_{wall_id(name)}").assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
-    raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")
-    return columns.complete(p, raw, spheres, folder)
+    return columns.complete(frames.plan, raw, spheres, frames.folder)

@@ -2,7 +2,6 @@
 """The trajectory of impacts and the tables of a scene from LIGGGHTS's files, whose formats are in `dump`."""
 
 import math
-from collections.abc import Collection
 from functools import partial
 from pathlib import Path
 
@@ -16,14 +15,12 @@ from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
-from ..host import frames
+from ..frames import Frames, Kinds
 from . import dump
 from .deck import PATH
 from .launcher import OUT
 from .primitives import overlaps, tubes, walls
 
-PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
-FILES = "stress_{}.{}.vtk"  # wall, step
 COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "normal_stress"}
 COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 
@@ -44,12 +41,20 @@ def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajector
     return impacts.trajectory(plan, place, velocity, force, seconds, vx, spin)
 
 
-def _frame(path: Path, count: int) -> np.ndarray:
-    """(n, count) of a binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
+def _frame(path: Path, names: list[str]) -> pd.DataFrame:
+    """A binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
     found = dump.frames(path)
-    if len(found) != 1 or found[0][1].shape[1] != count:
-        raise EngineError(f"{path}: not one frame of {count} columns; run the case again")
-    return found[0][1]
+    if len(found) != 1 or found[0][1].shape[1] != len(names):
+        raise EngineError(f"{path}: not one frame of {len(names)} columns; run the case again")
+    return pd.DataFrame(found[0][1], columns=names)
+
+
+def _local(path: Path, names: list[str]) -> pd.DataFrame:
+    """The rows of a `dump local`. Raises EngineError if it is not whole."""
+    values = dump.local(path)
+    if len(values) and values.shape[1] != len(names):
+        raise EngineError(f"{path}: {values.shape[1]} columns, expected {len(names)}")
+    return pd.DataFrame(values.reshape(-1, len(names)), columns=names)
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
@@ -63,17 +68,17 @@ def _meshes(p: ScenePlan) -> list[str]:
     return [name for name in p.scene.meshes if name not in formulas]
 
 
-def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
-    """Steps up to `upto` of which a frame is missing or not whole."""
-    steps, kinds = set(), {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if _meshes(p) else 0}
-    for kind, every in kinds.items():
-        for step in (n for n in (p.frame_steps(every) if every else []) if n <= upto):
-            path = folder / kind.format(step)
-            try:
-                _frame(path, len(_particle_names(p))) if kind == PARTICLES else dump.local(path)
-            except EngineError:
-                steps.add(step)
-    return sorted(steps)
+def kinds(p: ScenePlan) -> Kinds:
+    """The files of frames: spheres; contacts between them and with walls of triangles, which have the columns of the
+    law, the overlap [m], the force [N] on the first body and, at walls, the normal; stresses on triangles."""
+    found: Kinds = {"particles": ("particles.{}.bin", p.frames, partial(_frame, names=_particle_names(p)))}
+    values, meshes = [*_slots(p), "overlap", *columns.FORCE], _meshes(p)
+    pairs, touched = ["i", "j", *values], [*["mesh"] * (len(meshes) > 1), "i", *values, *columns.NORMAL]
+    found["contacts"] = "contacts.{}.txt", p.contacts, partial(_local, names=pairs)
+    found["wall_contacts"] = "wall_contacts.{}.txt", p.contacts * (len(meshes) > 0), partial(_local, names=touched)
+    for name in p.stress_walls:
+        found[f"stress_{name}"] = f"stress_{name}.{{}}.vtk", p.frames, partial(_stresses, p, name)
+    return {kind: (file, every, read) for kind, (file, every, read) in found.items() if every}
 
 
 def _particle_names(p: ScenePlan) -> list[str]:
@@ -88,47 +93,9 @@ def _slots(p: ScenePlan) -> list[str]:
     return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + [*columns.GROWTH] * p.model.compaction
 
 
-def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
-    """Every particle of every frame, without the steps `without`, sorted by step and id.
-
-    Raises EngineError for a frame that is not whole.
-    """
-    names = _particle_names(p)
-
-    def read(path: Path) -> pd.DataFrame:
-        return pd.DataFrame(_frame(path, len(names)), columns=names)
-
-    return columns.whole(p, frames(p, folder, PARTICLES, p.frames, read, without), folder)
-
-
-def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Collection[int]) -> pd.DataFrame:
-    """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m], force [N] on the first body, at walls the
-    normal; what only comes near is left out."""
-    names = [*ids, *_slots(p), "overlap", *columns.FORCE, *(columns.NORMAL if kind == MESHES else [])]
-
-    def read(path: Path) -> pd.DataFrame:
-        values = dump.local(path)
-        if len(values) and values.shape[1] != len(names):
-            raise EngineError(f"{path}: {values.shape[1]} columns, expected {len(names)}")
-        return pd.DataFrame(values.reshape(-1, len(names)), columns=names)
-
-    table = frames(p, folder, kind, p.contacts, read, without)
-    return _in_contact(table if p.model.yields else table.assign(delta_max=table["overlap"]))
-
-
-def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows of bodies that overlap, growth included, or are attached; `attached` becomes a bool."""
-    if "attached" not in table:
-        return table[table["overlap"] + table.get("added_overlap", 0.0) > 0]
-    table = table.assign(attached=table["attached"] > 0)
-    return table[(table["overlap"] > 0) | table["attached"]]
-
-
-def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame:
-    table = _local(p, PAIRS, folder, ["i", "j"], without).assign(wall="")
-    # LIGGGHTS's order of the two is arbitrary, and another one after a restart
-    table.loc[table["i"] > table["j"], columns.FORCE] *= -1.0
-    return table.assign(i=table[["i", "j"]].min(axis=1), j=table[["i", "j"]].max(axis=1))
+def particles(frames: Frames) -> pd.DataFrame:
+    """Every particle of every frame, sorted by step and id. Raises EngineError for a frame that is not whole."""
+    return columns.whole(frames.plan, frames.table("particles"), frames.folder)
 
 
 def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
@@ -136,30 +103,33 @@ def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     found = []
     for w in walls(p):
         overlap, normal = overlaps(w, spheres)
-        largest = np.maximum(spheres[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
         values = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
+        if p.model.yields:
+            values["delta_max"] = np.maximum(spheres[f"delta_max_{w.name}"], overlap)
         others = {slot: spheres[f"{slot}_{w.name}"] for slot in [*_slots(p), *columns.FORCE] if slot != "delta_max"}
         others |= {column: normal[:, k] for k, column in enumerate(columns.NORMAL)}
-        found.append(_in_contact(pd.DataFrame(values | {"delta_max": largest} | others)))
+        found.append(pd.DataFrame(values | others))
     return found
 
 
-def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
+def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the primitives.
 
     Raises EngineError as `particles` does.
     """
-    parts = [_pairs(p, folder, without), *_primitives(p, spheres)]
+    p = frames.plan
+    parts = [frames.table("contacts").assign(wall=""), *_primitives(p, spheres)]
     for name in [f"{force}_{w.name}" for w in walls(p) for force in columns.FORCE]:
         del spheres[name]
     if names := _meshes(p):
-        touched = _local(p, MESHES, folder, ["mesh", "i"] if len(names) > 1 else ["i"], without)
+        touched = frames.table("wall_contacts")
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
         length = np.linalg.norm(touched[columns.NORMAL], axis=1)  # of the normal force: 0 without force
         touched[columns.NORMAL] = touched[columns.NORMAL].div(np.where(length > 0.0, length, 1.0), axis=0)
         parts.append(touched.assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-    found = columns.complete(p, raw, spheres, folder)
+    raw = raw if p.model.yields else raw.assign(delta_max=raw["overlap"])
+    found = columns.complete(p, raw, spheres, frames.folder)
     found.loc[found["wall"].isin(names) & (found["force"] < 0.0), columns.NORMAL] *= -1.0  # attraction
     return found
 
@@ -181,19 +151,20 @@ def _fields(path: Path) -> dict[str, np.ndarray]:
     return {name: values[order, 0] for name, values in found.items()}
 
 
-def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
+def _stresses(p: ScenePlan, wall: str, path: Path) -> pd.DataFrame:
+    """The triangles of a wall. Raises EngineError for a file that is not whole."""
+    fields = _fields(path)
+    count = len(fields["area"])
+    if count != len(p.triangles[wall]):
+        raise EngineError(f"{path}: {count} triangles, expected {len(p.triangles[wall])}")
+    columns = {ours: fields.get(theirs, np.zeros(count)) for theirs, ours in COLUMNS.items()}
+    return pd.DataFrame({"wall": wall} | columns)
+
+
+def wall_table(frames: Frames) -> pd.DataFrame:
     """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where not requested) in every frame.
 
     Raises EngineError for a file that is not whole.
     """
-
-    def read(name: str, path: Path) -> pd.DataFrame:
-        fields = _fields(path)
-        columns = {ours: fields.get(theirs, np.zeros(len(fields["area"]))) for theirs, ours in COLUMNS.items()}
-        if len(columns["area"]) != len(p.triangles[name]):
-            raise EngineError(f"{path}: {len(columns['area'])} triangles, expected {len(p.triangles[name])}")
-        return pd.DataFrame({"wall": name} | columns)
-
-    files = {name: FILES.format(name, "{}") for name in p.stress_walls}
-    walls = [frames(p, folder, file, p.frames, partial(read, name), without) for name, file in files.items()]
-    return pd.concat(walls, ignore_index=True).astype({"triangle": int})
+    found = [frames.table(f"stress_{name}") for name in frames.plan.stress_walls]
+    return pd.concat(found, ignore_index=True).astype({"triangle": int})

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The trajectory of impacts and the tables of a scene from YADE's files. Only this module reads their formats."""
 
-from collections.abc import Collection
+from functools import partial
 from math import isinf
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
-from ..host import frames
+from ..frames import Frames, Kinds
 from .deck import axes
 from .launcher import OUT
 from .scene_parts import is_endless, wall_names
@@ -43,15 +43,18 @@ def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajector
     return impacts.trajectory(plan, place, velocity, force, seconds, tangential, spin)
 
 
-def _frames(
-    p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], without: Collection[int]
-) -> pd.DataFrame:
-    """The frames of a kind."""
+def kinds(p: ScenePlan) -> Kinds:
+    """The files of frames: spheres, contacts, and the triangles of walls."""
+    found = {
+        "particles": (p.frames, columns.columns_of_frames(p)),
+        "contacts": (p.contacts, CONTACT if p.model.compaction else CONTACT[:11]),
+        "triangles": (p.frames * bool(p.stress_walls), ["normal_stress", "shear_stress", "wear"]),
+    }
+    return {k: (f"{k}.{{}}.npy", every, partial(_frame, names=names)) for k, (every, names) in found.items() if every}
 
-    def read(path: Path) -> pd.DataFrame:
-        return pd.DataFrame(np.load(path), columns=names)
 
-    return frames(p, folder, f"{kind}.{{}}.npy", every, read, without)
+def _frame(path: Path, names: list[str]) -> pd.DataFrame:
+    return pd.DataFrame(np.load(path), columns=names)
 
 
 def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
@@ -70,22 +73,19 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
     return columns.rows(p, table, heads)
 
 
-def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
+def particles(frames: Frames) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    table = _frames(p, folder, "particles", p.frames, columns.columns_of_frames(p), without)
+    p, table = frames.plan, frames.table("particles")
     if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
-    return columns.whole(p, table, folder)
+    return columns.whole(p, table, frames.folder)
 
 
-def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
+def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame."""
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT if p.model.compaction else CONTACT[:11], without)
+    p, raw, folder = frames.plan, frames.table("contacts"), frames.folder
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
-    attached = raw["attached"] > 0 if p.model.adheres else False
-    overlap = raw["overlap"] + raw.get("added_overlap", 0.0)
-    raw = raw[(overlap >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
     walls = np.array(["", *wall_names(p)])
     last = p.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
@@ -95,16 +95,15 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Co
     beyond = raw["j"] - p.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
-    every = columns.complete(p, raw, spheres, folder)
-    return every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
+    return columns.complete(p, raw, spheres, folder)
 
 
-def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
+def wall_table(frames: Frames) -> pd.DataFrame:
     """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS.
 
     A plate without edges is one triangle in YADE; each triangle of the plate's mesh has the mean of the plate.
     """
-    raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], without)
+    p, raw = frames.plan, frames.table("triangles")
     steps = raw["step"].unique()
     values, begin, tables = raw.iloc[:, 1:].to_numpy().reshape(len(steps), -1, 3), 0, []
     for name in p.stress_walls:

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The frames that a run of a scene writes, one file for each step: read, and looked through for what is damaged."""
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from ..errors import EngineError
+from ..scenes.plan import ScenePlan
+
+# by kind: name of the file of a step, steps between two, the table of one file
+Kinds = dict[str, tuple[str, int, Callable[[Path], pd.DataFrame]]]
+
+
+@dataclass(frozen=True)
+class Frames:
+    """The frames of a run of this plan, without some steps; other files of such names are the user's."""
+
+    plan: ScenePlan
+    folder: Path
+    kinds: Kinds
+    without: Collection[int] = ()
+
+    def table(self, kind: str) -> pd.DataFrame:
+        """The frames of a kind, one below the other. Raises EngineError for one that is missing or not whole."""
+        name, every, read = self.kinds[kind]
+        tables = []
+        for step in (n for n in self.plan.frame_steps(every) if n not in self.without):
+            tables.append(_read(self.folder / name.format(step), read))
+            tables[-1].insert(0, "step", step)
+        return pd.concat(tables, ignore_index=True)
+
+    def damaged(self, upto: int) -> list[int]:
+        """Steps up to `upto` of which a frame is missing or not whole."""
+        steps = set()
+        for name, every, read in self.kinds.values():
+            for step in (n for n in self.plan.frame_steps(every) if n <= upto):
+                try:
+                    _read(self.folder / name.format(step), read)
+                except EngineError:
+                    steps.add(step)
+        return sorted(steps)
+
+
+def _read(path: Path, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
+    try:
+        return read(path)
+    except EngineError:
+        raise
+    except Exception as error:  # of a damaged head numpy says almost anything
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
