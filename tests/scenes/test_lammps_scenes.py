@@ -11,7 +11,6 @@ from engines.lammps_decks import column, lammps, needs_lammps
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import deck as lammps_scene
-from epdem.engines.yade import deck as yade_scene
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
@@ -257,7 +256,10 @@ def test_borders_of_ranks_that_move_change_nothing_but_the_time(tmp_path):
     assert upper < 0.2  # so that borders at rest would give one rank most of the spheres
 
 
-def test_hosts_whose_ranks_do_not_move_leave_balance_out():
-    p = plan(parse(parts() | {"numerics": {"time_step": "2e-5 s", "balance": 200}}))
-    for notes in (scene_engine("liggghts").check(p), yade_scene.notes(p)):
-        assert [note for note in notes if "numerics.balance" in note and "left out" in note]
+@pytest.mark.parametrize("key", ["processors", "balance", "sort_interval"])
+def test_every_host_says_which_numbers_it_leaves_out(key):
+    lacks = {"liggghts": ["balance"], "lammps": ["sort_interval"], "yade": ["processors", "balance", "sort_interval"]}
+    data = parts() | {"numerics": {"time_step": "2e-5 s", key: "x" if key == "processors" else 200}}
+    for name, keys in lacks.items():
+        notes = [note for note in scene_engine(name).notes(plan(parse(data))) if "left out" in note]
+        assert [note.partition(":")[0] for note in notes] == [f"numerics.{key}"] * (key in keys), name

@@ -82,12 +82,15 @@ def test_frames_and_rows_of_scenes(tmp_path):
     p, q = planned("settle"), planned("yade_settle")
     out = tmp_path / OUT
     out.write_text("")
-    with says("no thermo rows; the run ended before its first step"):
+    with says("no rows; the run ended before its first step"):
         log.scene_rows(p, out)
     with says("no rows; the run ended before its first step"):
         yade_tables.rows(q, out)
     out.write_text("Step a\n7 x\n")
-    with says("the row of step 7 is damaged; run the case again"):
+    with says("no rows; the run ended before its first step"):
+        yade_tables.rows(q, out)
+    out.write_text("Step particles\n0 1\n7 1\n8 x\n")
+    with says(f"the rows end at step 7 of {q.steps}; run the case again"):
         yade_tables.rows(q, out)
     with says(r"particles.0.npy: incomplete \(.*\); run the case again"):
         yade_tables.particles(Frames(q, tmp_path, yade_tables.kinds(q)))

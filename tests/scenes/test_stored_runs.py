@@ -178,15 +178,17 @@ LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0)
 Step Atoms KinEng load1[3]
     1260        8          2e-6             0
     1890        7          4e-6          3e-3
+    5000        7          4e-6          3e-3
 """
 
 
 def test_a_continued_log_keeps_the_row_of_its_restart_and_replaces_what_came_after_it(tmp_path):
     (tmp_path / "log").write_text(CONTINUED)
     rows = scene_tables.rows(planned("settle"), tmp_path / "log")
-    assert rows["step"].to_list() == [0, 630, 1260, 1890]
-    assert (-rows["floor_force_z"]).to_list() == [0, 1e-3, 2e-3, 3e-3]  # of a plane the log has the force on spheres
-    assert rows["particles"].to_list() == [8, 8, 8, 7]
+    assert rows["step"].to_list() == [0, 630, 1260, 1890, 5000]
+    # of a plane the log has the force on spheres
+    assert (-rows["floor_force_z"]).to_list() == [0, 1e-3, 2e-3, 3e-3, 3e-3]
+    assert rows["particles"].to_list() == [8, 8, 8, 7, 7]
 
 
 @pytest.mark.parametrize("cut", [1, 5, 60, 10_000])

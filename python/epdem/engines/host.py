@@ -5,7 +5,7 @@ from abc import abstractmethod
 from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, ClassVar
 
 from ..base import rendering as decks
 from ..base.files import stored_results
@@ -16,7 +16,7 @@ from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
 from ..jobs.engine import Engine, Report, check_law, silent
-from ..jobs.stage import Tables
+from ..jobs.stage import Tables, parts_hash
 from ..scenes.columns import named_rows
 from ..scenes.engine import Resumed
 from ..scenes.model import Model
@@ -36,6 +36,7 @@ class Host(Engine[Any, Any]):
     title: str  # the program's name
     template: str  # of impacts
     laws: tuple[str, ...] | None = None
+    left_out: ClassVar[dict[str, str]] = {}  # keys of [numerics] that the program does not have, and why
     launcher: ModuleType  # missing, version, run and OUT (file of both streams) of the program
     scripts = ("in.impact", "in.scene")  # names of the decks
     leftovers: tuple[str, ...] = (  # patterns of files that an earlier run of a scene may have left in the folder
@@ -52,7 +53,7 @@ class Host(Engine[Any, Any]):
         return reason
 
     def version(self) -> str:
-        return str(self.launcher.version())
+        return f"{self.launcher.version()}, epdem {parts_hash(self)[:12]}"
 
     @abstractmethod
     def deck(self, plan: Plan, model: Model | None = None) -> Any:
@@ -68,15 +69,16 @@ class Host(Engine[Any, Any]):
         deck = self.deck(job)
         return {self.scripts[0]: decks.render(self.template, deck=deck)} | self.data(deck)
 
-    def check_scene(self, plan: ScenePlan) -> list[str]:
-        """Sentences on what a scene leaves out. Raises CaseError for what the program cannot do."""
-        self.scene_deck.deck(plan)
-        return []
+    def notes(self, plan: ScenePlan) -> list[str]:
+        """Sentences on what a scene leaves out."""
+        numerics = plan.case.numerics
+        return [f"numerics.{k}: {why}, it was left out" for k, why in self.left_out.items() if getattr(numerics, k)]
 
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):
             check_law(self, job.model.law)
-            return self.check_scene(job)
+            self.scene_deck.deck(job)
+            return self.notes(job)
         self.deck(job)
         return []
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The log of LIGGGHTS and LAMMPS: thermo rows, ends of phases, and the time of the loop."""
+"""What the programs print: rows, ends of phases, and the time of the loop."""
 
 import math
 import re
@@ -49,15 +49,16 @@ def rows(log: Path) -> pd.DataFrame:
 
 
 def _column(p: ScenePlan, word: str) -> str | None:
-    """The column of a thermo word, with LAMMPS's f_ or without; None: a word that is not in `ROWS`."""
+    """The column of a word of the rows, with LAMMPS's f_ or without, which in YADE is the column; None: no column."""
     word = word.removeprefix("f_")
     if load := _LOAD.fullmatch(word):
         return f"{p.measured_walls[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
-    return ROWS.get(word)
+    loads = {f"{wall}_{load}" for wall in p.measured_walls for load in columns.LOADS}
+    return ROWS.get(word, word if word in {*ROWS.values(), *loads} else None)
 
 
 def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.DataFrame:
-    """The thermo rows: one per step. Raises EngineError.
+    """The rows: one per step. Raises EngineError if the last one is not that of the last step.
 
     on_spheres: walls whose forces in the log act on the spheres.
 
@@ -66,13 +67,15 @@ def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.
     """
     every = rows(out)
     if every.empty:
-        raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
+        raise EngineError(f"{out}: no rows; the run ended before its first step")
     table: dict[int, list[float]] = {}
     words = {name: column for name in every if (column := _column(p, name))}  # and LIGGGHTS's own default
     for _, part in every.groupby("run"):
         steps, values = part["Step"].astype(int).to_list(), part[[*words]].to_numpy().tolist()
         known = {step: row for step, row in table.items() if step <= steps[0]}
         table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
+    if (last := max(table)) != p.steps:
+        raise EngineError(f"{out}: the rows end at step {last} of {p.steps}; run the case again")
     found = columns.rows(p, table, [*words.values()])
     opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
     found[opposite] = -found[opposite]

@@ -95,7 +95,7 @@ def check_plan(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks:
 
     `prediction` belongs to the plan's experiment.
     """
-    refuse_ranks(tool.name, tool.ranks, ranks, tool.mpirun)
+    refuse_ranks(tool, ranks)
     tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if Feature.POSITIONS in tool.features and (why := not_representable(plan.experiment, float(overlap))):

@@ -5,7 +5,7 @@ import shutil
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from ..base.files import write_texts
 from ..errors import CaseError, EngineError
@@ -102,12 +102,12 @@ def check_law(tool: Tool, law: str) -> None:
         raise CaseError(f"law.name = {law!r}: engine {tool.name} has {known}; use another --engine")
 
 
-def refuse_ranks(engine: str, most: int, ranks: int, mpirun: str) -> None:
-    """Raise CaseError for a number of ranks outside 1 to `most`, EngineError if the program `mpirun` is not there."""
+def refuse_ranks(tool: Engine[Any, Any], ranks: int) -> None:
+    """Raise CaseError for a number of ranks that an engine does not have, EngineError without its `mpirun`."""
     if ranks < 1:
         raise CaseError(f"--ranks {ranks}: must be at least 1; leave it out for one rank")
-    if ranks > most:
-        limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
-        raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")
-    if ranks > 1 and shutil.which(mpirun) is None:
-        raise EngineError(f"--ranks needs {mpirun}, which was not found; apt-get install openmpi-bin")
+    if ranks > tool.ranks:
+        limit = "one rank; leave it out" if tool.ranks == 1 else f"at most {tool.ranks} ranks here; ask for no more"
+        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {limit}")
+    if ranks > 1 and shutil.which(tool.mpirun) is None:
+        raise EngineError(f"--ranks needs {tool.mpirun}, which was not found; apt-get install openmpi-bin")

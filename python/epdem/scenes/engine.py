@@ -42,7 +42,7 @@ def write_deck(engine: SceneEngine, p: ScenePlan, folder: Path, *, force: bool =
 
 def check_run(engine: SceneEngine, *, ranks: int = 1, resume: bool = False) -> None:
     """Raise CaseError for a request that the engine does not support, EngineError if the engine is missing."""
-    refuse_ranks(engine.name, engine.ranks, ranks, engine.mpirun)
+    refuse_ranks(engine, ranks)
     if resume and Feature.RESTART not in engine.features:
         raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
     if reason := engine.missing():

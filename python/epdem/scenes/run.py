@@ -19,7 +19,7 @@ from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Report, silent
-from ..jobs.stage import Inputs, Stage, Tables, compute, inputs, parts_hash, without_comments
+from ..jobs.stage import Inputs, Stage, Tables, compute, inputs, without_comments
 from . import checks, measures, pictures, results, stages
 from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
@@ -69,7 +69,7 @@ class _Work:
     @cached_property
     def versions(self) -> dict[str, str]:
         """Versions of the programs that a continued run needs again."""
-        return {self.engine.name: self.version, "epdem": f"{__version__} ({parts_hash(self.engine)[:12]})"}
+        return {self.engine.name: self.version, "epdem": __version__}
 
 
 def _facts(p: ScenePlan) -> object:

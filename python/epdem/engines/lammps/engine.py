@@ -3,6 +3,7 @@
 
 import math
 from pathlib import Path
+from typing import ClassVar
 
 from ...base import paths
 from ...base.processes import most_ranks
@@ -33,6 +34,7 @@ class Lammps(Host):
     )
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
+    left_out: ClassVar[dict[str, str]] = {"sort_interval": "LAMMPS sorts the spheres in memory at intervals of its own"}
     launcher, scene_deck, tables, resumed = launcher, deck, tables, resume
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}

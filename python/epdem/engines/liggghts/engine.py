@@ -4,7 +4,7 @@
 import math
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from ...base import paths
 from ...base.processes import most_ranks
@@ -13,15 +13,12 @@ from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...scenes.model import Model
-from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
 from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, resume, tables
 from .deck import ImpactDeck, contact_words
-
-NO_BALANCE = "numerics.balance: the borders of ranks in LIGGGHTS do not move, it was left out"
 
 
 class Liggghts(Host):
@@ -40,15 +37,12 @@ class Liggghts(Host):
     ranks = most_ranks()
     mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
+    left_out: ClassVar[dict[str, str]] = {"balance": "the borders of ranks in LIGGGHTS do not move"}
     launcher, scene_deck, tables, resumed = launcher, deck, tables, resume
 
     def parts(self) -> list[Path]:
         found = (paths.native("libepdem_liggghts.so"), paths.launcher())
         return [path for path in found if path]
-
-    def check_scene(self, plan: ScenePlan) -> list[str]:
-        super().check_scene(plan)
-        return [NO_BALANCE] if plan.case.numerics.balance else []
 
     def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""

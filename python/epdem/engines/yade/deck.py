@@ -15,14 +15,12 @@ from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import refuse
 from .classes import ContactClasses, functors, materials
 from .scene_parts import (
-    EDGES,
     HEAD,
     DeckFill,
     Wall,
     bodies_file,
     check_walls,
     fills,
-    is_endless,
     loads,
     motions,
     stop,
@@ -35,8 +33,6 @@ from .scene_parts import files as files_of_parts
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
-NO_RANKS = "numerics.processors, numerics.balance: a scene in YADE has one rank, they were left out"
-NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
 
 
 @dataclass(frozen=True)
@@ -92,13 +88,6 @@ def check(p: ScenePlan) -> None:
     }
     for place, (value, reason) in unknown.items():
         refuse(place, value, reason)
-
-
-def notes(p: ScenePlan) -> list[str]:
-    """Sentences on the parts of a case that a YADE scene leaves out."""
-    found = [NO_RANKS] if p.case.numerics.processors or p.case.numerics.balance else []
-    found += [NO_SORTING] if p.case.numerics.sort_interval else []
-    return [*found, EDGES] if any(not is_endless(p, name) for name in p.scene.meshes) else found
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,11 @@
 A deck has a copy of the module epdem_yade. Without the module a deck of normal impacts has a copy of the C library.
 """
 
-import re
 from math import isinf
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from ...base.declarations import declarations, library_path
-from ...base.processes import captured_output
 from ...errors import CaseError
 from ...impacts.engine import check_features
 from ...impacts.experiment import Experiment
@@ -24,8 +22,8 @@ from ..input_script import impact_model
 from . import deck, launcher, tables
 from .classes import ContactClasses, DeckMaterial, functors, materials
 from .deck import ImpactDeck, axes, body_tables
-from .launcher import command, copy_part, deck_modules, environment, module_version
-from .scene_parts import table_text
+from .launcher import copy_part, deck_modules
+from .scene_parts import EDGES, is_endless, table_text
 
 
 class Yade(Host):
@@ -48,16 +46,16 @@ class Yade(Host):
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
     scripts = ("impact.py", deck.SCRIPT)
+    left_out: ClassVar[dict[str, str]] = {
+        "processors": "a scene in YADE has one rank",
+        "balance": "a scene in YADE has one rank",
+        "sort_interval": "YADE does not sort the spheres in memory",
+    }
     launcher, scene_deck, tables = launcher, deck, tables
 
     def __init__(self) -> None:
         self.classes = launcher.module() is not None
         self.features = type(self).features | (self.of_classes if self.classes else set())
-
-    def version(self) -> str:
-        match = re.search(r"version: (\S+)", captured_output([command(), "--version"], environment()))
-        laws = module_version() if self.classes else "normal impacts with the C library ('make yade' builds all else)"
-        return f"YADE {match.group(1) if match else '(version unknown)'}, {laws}"
 
     def require_module(self, job: Plan | ScenePlan) -> None:
         """Raise CaseError without epdem_yade for all but normal impacts without adhesion and dashpot."""
@@ -110,10 +108,12 @@ class Yade(Host):
             samples=plan.steps + 2,
         )
 
-    def check_scene(self, plan: ScenePlan) -> list[str]:
-        self.require_module(plan)
-        super().check_scene(plan)
-        return deck.notes(plan)
+    def check(self, job: Plan | ScenePlan) -> list[str]:
+        self.require_module(job)
+        return super().check(job)
+
+    def notes(self, plan: ScenePlan) -> list[str]:
+        return super().notes(plan) + [EDGES] * any(not is_endless(plan, name) for name in plan.scene.meshes)
 
     def data(self, deck: Any) -> dict[str, str]:
         head = "# x y z v_z v_x omega_y, SI" if deck.plan.experiment.oblique else "# x y z v_z, SI"

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Starting YADE, and the modules in a deck."""
 
-import hashlib
 import os
+import re
 import shutil
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ...base import paths
 from ...base.declarations import library_path
 from ...base.files import atomic
-from ...base.processes import call
+from ...base.processes import call, captured_output
 from ...errors import EngineError
 
 OUT = "out.yade"  # both streams
@@ -30,6 +29,13 @@ def command() -> str:
 def missing() -> str | None:
     """None if YADE can run here, else a sentence with the command that installs it."""
     return None if shutil.which(command()) else f"YADE was not found ({command()}); {INSTALL}"
+
+
+def version() -> str:
+    """YADE's version, and whether its laws are those of the module epdem_yade."""
+    match = re.search(r"version: (\S+)", captured_output([command(), "--version"], environment()))
+    laws = "epdem_yade" if module() else "normal impacts with the C library ('make yade' builds all else)"
+    return f"YADE {match.group(1) if match else '(version unknown)'}, {laws}"
 
 
 def run(script: str, folder: Path, *, ranks: int = 1, out: str = OUT, **how: Any) -> float:
@@ -55,13 +61,6 @@ def module() -> Path | None:
     if program and found and Path(found).resolve() != Path(program.read_text(encoding="utf-8").strip()):
         return None
     return built
-
-
-@cache
-def module_version() -> str:
-    """Name and hash of the module."""
-    path = module()
-    return f"epdem_yade {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}" if path else "no epdem_yade"
 
 
 def deck_modules(*, classes: bool, scene: bool) -> dict[str, str]:

@@ -14,6 +14,7 @@ from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
+from .. import log
 from ..frames import Frames, Kinds
 from .deck import axes
 from .launcher import OUT
@@ -57,20 +58,9 @@ def _frame(path: Path, names: list[str]) -> pd.DataFrame:
     return pd.DataFrame(np.load(path), columns=names)
 
 
-def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
+def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The rows that a run printed. Raises EngineError."""
-    lines = [line.split() for line in log.read_text(errors="replace").splitlines()]
-    heads = next((fields[1:] for fields in lines if fields[:1] == ["Step"]), [])
-    table = {}
-    for fields in lines:
-        if len(fields) == len(heads) + 1 and fields[0].isdigit():
-            try:
-                table[int(fields[0])] = [float(w) for w in fields[1:]]
-            except ValueError:
-                raise EngineError(f"{log}: the row of step {fields[0]} is damaged; run the case again") from None
-    if not table:
-        raise EngineError(f"{log}: no rows; the run ended before its first step")
-    return columns.rows(p, table, heads)
+    return log.scene_rows(p, out)
 
 
 def particles(frames: Frames) -> pd.DataFrame:
