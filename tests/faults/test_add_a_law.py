@@ -88,13 +88,6 @@ class Toy(Backbone):
         y, x = self.yield_overlap, np.maximum(alpha - self.yield_overlap, 0)
         plastic = self._hertz_force(y) * x + 0.4 * np.pi * self.p_y * self.R_star * x * x
         return self._hertz_work(np.minimum(alpha, y)) + plastic
-
-    def overlap_of_work(self, W):
-        # (alpha - y) from the quadratic in x that `work` is beyond yield
-        W, y, b = np.asarray(W, float), self.yield_overlap, 0.4 * np.pi * self.p_y * self.R_star
-        F, rest = self._hertz_force(y), np.maximum(W - self._hertz_work(y), 0)
-        elastic = (15 / 8 * np.minimum(W, self._hertz_work(y)) / (self.E_star * np.sqrt(self.R_star))) ** 0.4
-        return np.where(rest > 0, y + 2 * rest / (F + np.sqrt(F * F + 4 * b * rest)), elastic)
 """
 # What a person meets: decks of both engines, their explanation, tables and pages.
 COMMANDS = """# SPDX-License-Identifier: GPL-2.0-or-later
@@ -178,7 +171,7 @@ def test_the_manual_says_what_this_test_does():
         "`load(R*, alpha)`",
         "`work(R*, alpha)`",
         "`force`",
-        "`overlap_of_work`",
+        "`work`",
     ):
         assert place in section
     assert len(section.strip().splitlines()) <= 16

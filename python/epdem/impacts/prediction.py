@@ -9,6 +9,7 @@ import pandas as pd
 
 from ..laws.strengths import find_law
 from ..theory import validity
+from ..theory.restitution import Impact
 from . import oblique
 from .experiment import Experiment, strain_rate
 
@@ -17,19 +18,10 @@ LARGEST_TURN = 1e-3  # error of the overlap by the turn of the line of centres t
 
 
 @dataclass(frozen=True)
-class Prediction:
+class Prediction(Impact):
     """Theory for each speed, arrays of shape (n,), SI."""
 
     speed: np.ndarray
-    e_n: np.ndarray
-    contact_time: np.ndarray
-    force_max: np.ndarray
-    overlap_max: np.ndarray
-    radius_max: np.ndarray
-    residual_overlap: np.ndarray
-    work_in: np.ndarray
-    work_out: np.ndarray
-    plastic_work: np.ndarray
     strain: np.ndarray  # w a_max/R*, w: share of the weaker body
     yields: tuple[str, ...]  # materials that flow somewhere in the range of speeds; law.STRENGTH if it is one for all
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
@@ -59,7 +51,7 @@ class Prediction:
         return pd.DataFrame({name: getattr(self, name) for name in COLUMNS} | rebound)
 
 
-COLUMNS = tuple(f.name for f in fields(Prediction) if f.type is np.ndarray)
+COLUMNS = ("speed", *(f.name for f in fields(Impact)), "strain")
 
 
 def predict(experiment: Experiment) -> Prediction:
@@ -79,22 +71,21 @@ def predict(experiment: Experiment) -> Prediction:
         for b in (x.body, x.target)
         if b.yield_stress is not None and not b.rigid
     }
-    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:] if n != "strain"}
-    columns["residual_overlap"] = np.asarray(impact.parting_overlap, float)
-    columns["strain"] = x.law.share * columns["radius_max"] / x.R_star
+    strain = x.law.share * impact.radius_max / x.R_star
     return Prediction(
+        **vars(impact),
         speed=x.speed,
+        strain=strain,
         yields=_softer(x) if law.has_yielded(impact) else (),
         yield_speeds={material: float(speed) for material, speed in first_yield.items() if speed is not None},
-        rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
+        rebound=oblique.predict(x, impact.e_n) if x.oblique else None,
         caveats=(
             *validity.caveats(law, **pair),
-            *_too_fast(x, columns["radius_max"]),
-            *_turning(x, columns["contact_time"], columns["overlap_max"]),
+            *_too_fast(x, impact.radius_max),
+            *_turning(x, impact.contact_time, impact.overlap_max),
         ),
-        finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain"], x.speed)),
+        finite_strain=tuple(validity.finite_strain_of_impacts(strain, x.speed)),
         observation_time=observed,
-        **columns,
     )
 
 

@@ -6,13 +6,11 @@ opens. Works are sums without truncation error; times are quadratures to 1e-10. 
 contact forms and when it ends, are called adhesive; what is lost between them is called plastic.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from . import restitution
 from .adhesive_curve import AdhesiveCurve, Numbers, Path
 from .numerics import bisect, gauss, number
+from .restitution import Impact
 
 # Energy at the fold and at touch in E* (c R*)^(10/3)/R*^2: 4^(-4/3)/5 and -3/10. Their difference is W_s.
 _LOSS = 0.3 + 4 ** (-4 / 3) / 5
@@ -21,20 +19,6 @@ STICKING_WORK = (2 * np.pi) ** (5 / 3) * _LOSS  # 7.0922: W_s in (Gamma^5 R*^4/E
 _REACH = 2.0547413698273668
 TABOR_MIN = 3.0
 _T, _TW = gauss(8)  # exact for the works below
-
-
-@dataclass(frozen=True)
-class AdhesiveImpact(restitution.Impact):
-    """As without adhesion; bodies that stick have e_n = 0, contact_time = inf and work_out = 0.
-
-    residual_overlap is the dent alpha_p, from which the opening contact counts its overlap; the contact ends below it,
-    at the fold.
-    """
-
-    pull_max: np.ndarray  # largest tensile force on the way out, 3/2 pi Gamma R_p [N]
-    # Lost in the jumps at touch and parting [J]. If the bodies stick: all that has not yielded, negative where the
-    # attraction has done plastic work beyond what the impact brought.
-    adhesive_work: np.ndarray
 
 
 def sticking_work(law: AdhesiveCurve) -> Numbers:
@@ -150,33 +134,25 @@ def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numb
     return np.where(e_n(law, m_star=m, speed=v) > 0, time + back, np.inf)
 
 
-def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> AdhesiveImpact:
-    """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
+def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Impact:
+    """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast. It ends at the fold."""
     like = law.E_star * law.R_star * law.Gamma * law.yield_radius
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), like)
     W = 0.5 * m * v * v
-    top, first = law.radius_of_work(W), law.touch_radius
-    (branch, dent), (start, _) = law.branch(top), law.branch(first)
-    e = e_n(law, m_star=m, speed=v)
-    out = e * e * W
-    formed, ended = -start.energy(first), branch.energy(branch.fold_radius)
-    plastic = plastic_work(law, top)
-    adhesive = np.where(e > 0, formed + ended, W - plastic)
+    top, e = law.radius_of_work(W), e_n(law, m_star=m, speed=v)
+    branch, dent = law.branch(top)
     columns = {
         "e_n": e,
         "contact_time": contact_time(law, m_star=m, speed=v),
         "force_max": law.force(top),
         "overlap_max": law.overlap(top),
         "radius_max": top,
-        "residual_overlap": dent,
+        "residual_overlap": dent + branch.fold_overlap,
         "work_in": W,
-        "work_out": out,
-        "plastic_work": plastic,
-        "parting_overlap": dent + branch.fold_overlap,
-        "pull_max": branch.pull_off_force,
-        "adhesive_work": adhesive,
+        "work_out": e * e * W,
+        "plastic_work": plastic_work(law, top),
     }
-    return AdhesiveImpact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
+    return Impact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
 
 
 def tabor_number(law: AdhesiveCurve, *, z_0: Numbers = 0.2e-9) -> Numbers:

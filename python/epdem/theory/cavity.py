@@ -109,14 +109,14 @@ class Cavity(Backbone):
         elastic = self._hertz_force(np.minimum(alpha, self.yield_overlap))
         return np.where(alpha <= self.yield_overlap, elastic, np.pi * self._small_strain_radius(alpha) ** 2 * p_m)
 
-    def _middle_work(self, ln_s: Real) -> tuple[Real, Real]:
-        """Work of phase 2 [J] from yield to ln s, and its derivative by ln s."""
+    def _middle_work(self, ln_s: Real) -> Real:
+        """Work of phase 2 [J] from yield to ln s."""
         A, B, n = 2 / 3 * self.c_Y, (1 + self.beta) / 3, 2 + self.beta
         grow = np.expm1(n * ln_s)
         first = grow / n
         second = ((grow + 1) * ln_s - first) / n
-        scale = np.pi * self.a_Y**2 * self.yield_overlap * self.Y
-        return scale * (A * first + B * second), scale * (grow + 1) * (A + B * ln_s)
+        work: Real = np.pi * self.a_Y**2 * self.yield_overlap * self.Y * (A * first + B * second)
+        return work
 
     def work(self, alpha: Real) -> Real:
         elastic = self._hertz_work(np.minimum(alpha, self.yield_overlap))
@@ -125,7 +125,7 @@ class Cavity(Backbone):
         P = self.plastic_overlap
         x = np.maximum(alpha - P, 0.0)
         plastic: Real = np.pi * self.R_star * self.c_P * self.Y * x * (2 * P + x)
-        return elastic + self._middle_work(self._ln_s(alpha))[0] + plastic
+        return elastic + self._middle_work(self._ln_s(alpha)) + plastic
 
     def _plastic_work_by_quadrature(self, alpha: Real) -> Array:
         """Work [J] beyond yield, by quadrature in ln alpha between the kinks."""
@@ -136,32 +136,6 @@ class Cavity(Backbone):
             at = low * np.exp(np.multiply.outer(x, log))
             total = total + log * np.tensordot(w, self.force(at) * at, 1)
         return total
-
-    def overlap_of_work(self, W: Real) -> Real:
-        W = np.asarray(W, float)
-        W_Y = self._hertz_work(self.yield_overlap)
-        W_P = W_Y + self._middle_work(self.ln_s_P)[0]
-        elastic = self._hertz_overlap(W)
-        more = np.maximum(W - W_P, 0.0)
-        slope, P = np.pi * self.R_star * self.c_P * self.Y, self.plastic_overlap
-        plastic = P + more / slope / (P + np.sqrt(P * P + more / slope))
-        # Newton in ln s from above: the work is convex in ln s, so every step lands above the root
-        rest = np.clip(W - W_Y, 0.0, W_P - W_Y)
-        ln_s = np.broadcast_to(self.ln_s_P, rest.shape).copy()
-        for _ in range(60):
-            value, slope_of = self._middle_work(ln_s)
-            change = np.minimum((value - rest) / slope_of, ln_s)
-            ln_s = ln_s - change
-            if np.all(np.abs(change) <= 4e-16 * np.maximum(ln_s, 1e-3)):
-                break
-        middle = self.yield_overlap * np.exp(ln_s)
-        alpha = np.where(W <= W_Y, elastic, np.where(W >= W_P, plastic, middle))
-        for _ in range(60 if self.softens else 0):  # Newton: the slope of the work is the force
-            change = (W - self.work(alpha)) / np.maximum(self.force(alpha), 1e-300)
-            alpha = np.where(W <= W_Y, alpha, alpha + change)
-            if np.all(np.abs(change) <= 4e-16 * alpha):
-                break
-        return alpha
 
     def caveats(self, *, m_star: Real, speed: Array) -> list[str]:
         """Parameters that pass the condition on energy and still describe no body."""

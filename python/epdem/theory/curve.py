@@ -63,8 +63,19 @@ class Curve(Declared):
         raise TypeError(f"{type(self).__name__} does not define it")
 
     def overlap_of_work(self, W: Real) -> Real:
-        """Overlap alpha [m] at which the backbone has taken W [J]: the inverse of `work`."""
-        raise TypeError(f"{type(self).__name__} does not define it")
+        """Overlap alpha [m] at which the backbone has taken W [J] >= 0: the inverse of `work`.
+
+        Newton's method, for the slope of the work is the force, from Hertz's overlap, which a law that yields exceeds.
+        """
+        W = np.asarray(W, float)
+        alpha = hertz = self._hertz_overlap(W)
+        yields = self._hertz_work(self.yield_overlap) < W
+        for _ in range(60):  # 8 to 15
+            before, change = alpha, (W - self.work(alpha)) / np.maximum(self.force(alpha), 1e-300)
+            alpha = np.where(yields, np.maximum(before + change, self.yield_overlap), hertz)
+            if np.all(np.abs(alpha - before) <= 1e-9 * alpha):  # convergence is quadratic
+                break
+        return alpha
 
     def flatness(self, alpha: Real) -> Real:
         """tau of the contact pressure on the backbone: 0 Hertz's half-ellipse, 1 uniform."""

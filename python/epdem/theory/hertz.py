@@ -24,6 +24,3 @@ class Hertz(Backbone):
 
     def work(self, alpha: Real) -> Real:
         return self._hertz_work(alpha)
-
-    def overlap_of_work(self, W: Real) -> Real:
-        return self._hertz_overlap(W)

@@ -13,7 +13,7 @@ class JKR(AdhesiveCurve, Law):
 
     name = "jkr"
 
-    def impact(self, *, m_star: Numbers, speed: Numbers, restitution: float | None = None) -> adhesion.AdhesiveImpact:
+    def impact(self, *, m_star: Numbers, speed: Numbers, restitution: float | None = None) -> Impact:
         if restitution is not None:
             raise ValueError(f"law {self.name}: no theory of impacts has both adhesion and a dashpot; remove one")
         return adhesion.impact(self, m_star=m_star, speed=speed)

@@ -38,12 +38,6 @@ class Johnson(Backbone):
         x = np.maximum(alpha - y, 0.0)
         return self._hertz_work(np.minimum(alpha, y)) + np.pi * self.R_star * self.p_m * x * (2 * y + x)
 
-    def overlap_of_work(self, W: Real) -> Real:
-        y, slope = self.yield_overlap, np.pi * self.R_star * self.p_m
-        more = np.maximum(W - self._hertz_work(y), 0.0)
-        x = more / slope / (y + np.sqrt(y * y + more / slope))
-        return np.where(more > 0, y + x, self._hertz_overlap(np.asarray(W)))
-
     def caveats(self, *, m_star: Real, speed: Array) -> list[str]:
         """Between first yield (1.60 Y, p_m = 3 Y) and 2 v_c the law is elastic, or just past the jump of its radius."""
         jump = np.sqrt(2 * self._hertz_work(self.yield_overlap) / m_star)

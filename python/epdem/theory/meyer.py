@@ -40,22 +40,7 @@ class Meyer(Backbone):
         grown = self.p_y * np.exp(self.x * self._log_q(alpha))
         return np.where(alpha <= self.yield_overlap, super().pressure_max(alpha), grown)
 
-    def _plastic_share(self, log_q: Real) -> Real:
-        """(W - W_y)/W_y at ln q."""
-        n = 2 + self.x
-        return 2.5 * ((1 - 3 / n) * np.expm1(2 * log_q) + 6 / (n * (n + 2)) * np.expm1((n + 2) * log_q))
-
     def work(self, alpha: Real) -> Real:
-        elastic = self._hertz_work(np.minimum(alpha, self.yield_overlap))
-        return elastic + self._W_y * self._plastic_share(self._log_q(alpha))
-
-    def overlap_of_work(self, W: Real) -> Real:
-        # Newton for ln q: ln W is concave in ln q with slopes from 5 to 4 + x, so six steps reach the last bits
-        share = np.maximum(np.asarray(W, float) - self._W_y, 0.0) / self._W_y
-        n = 2 + self.x
-        log_q = np.log1p(share) / (n + 2)
-        for _ in range(8):
-            value = self._plastic_share(log_q)
-            slope = 5 * ((1 - 3 / n) * np.exp(2 * log_q) + 3 / n * np.exp((n + 2) * log_q))
-            log_q = np.maximum(log_q - (1 + value) * np.log1p((value - share) / (1 + share)) / slope, 0.0)
-        return np.where(share > 0, self.yield_overlap * np.exp(2 * log_q), self._hertz_overlap(np.asarray(W)))
+        n, log_q = 2 + self.x, self._log_q(alpha)
+        plastic = 2.5 * ((1 - 3 / n) * np.expm1(2 * log_q) + 6 / (n * (n + 2)) * np.expm1((n + 2) * log_q))
+        return self._hertz_work(np.minimum(alpha, self.yield_overlap)) + self._W_y * plastic

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of the theory: arguments are checked once, as whole arrays; one Gauss rule, bisection, false position."""
+"""Numbers of the theory: arguments are checked once, as whole arrays; one Gauss rule, bisection."""
 
 from collections.abc import Callable
 from functools import cache
@@ -64,29 +64,6 @@ def bisect(
         below = rises(middle)
         a, b = np.where(below, middle, a), np.where(below, b, middle)
     return a[()], b[()]  # numbers for numbers
-
-
-def zero(g: Callable[[Any], Array], low: Array, high: Array) -> Array:
-    """Where g, above 0 at `low` and not above 0 at `high`, changes sign, from the upper side, shape (n,).
-
-    False position after Illinois: an end that stays twice counts half, so that both ends approach the place. Every
-    fourth step halves the bracket, for a g that jumps.
-    """
-    a, b, g_a, g_b = low, high, g(low), g(high)
-    stayed = np.zeros(b.shape)  # 1 where a step moved b and left a, -1 where it moved a
-    for step in range(200):
-        open_ = (b - a > 1e-15 * high) & (g_b < 0)
-        if not open_.any():
-            break
-        x = 0.5 * (a + b) if step % 4 == 3 else b - g_b * (b - a) / np.where(open_, g_b - g_a, 1.0)
-        x = np.where(open_, np.clip(x, a, b), b)
-        g_x = g(x)
-        up = open_ & (g_x > 0)
-        down = open_ & ~up
-        g_a = np.where(up, g_x, np.where(down & (stayed == 1), 0.5 * g_a, g_a))
-        g_b = np.where(down, g_x, np.where(up & (stayed == -1), 0.5 * g_b, g_b))
-        a, b, stayed = np.where(up, x, a), np.where(down, x, b), np.where(up, -1, np.where(down, 1, stayed))
-    return b
 
 
 def segment(opening: Real) -> Array:

@@ -17,15 +17,14 @@ UNLOADING_TIME = 1.4716375921623523  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e
 
 @dataclass(frozen=True)
 class Impact:
-    """Theory of impacts, arrays of one shape, SI."""
+    """Theory of impacts, arrays of one shape, SI; bodies that stick have e_n = 0, contact_time = inf, work_out = 0."""
 
     e_n: Array
     contact_time: Array  # [s]
     force_max: Array  # [N]
     overlap_max: Array  # [m]
     radius_max: Array  # [m]
-    residual_overlap: Array  # [m]
-    parting_overlap: Array  # at which the contact ends [m]
+    residual_overlap: Array  # at which the contact ends [m]
     work_in: Array  # [J]
     work_out: Array  # [J]
     plastic_work: Array  # [J]
@@ -56,12 +55,14 @@ def _work_between(law: Curve, low: Real, high: Real, width: Real) -> Array:
     return np.where(width < 1e-3 * high, near, law.work(high) - law.work(low))
 
 
-def _loading_time(law: Curve, m_star: Array, top: Array) -> Array:
-    """Integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*): alpha = top sin^2 theta takes both end singularities.
+def loading_time(law: Curve, m_star: Array, top: Array, start: Array) -> Array:
+    """Time from overlap `start` to rest at `top`: the integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*).
+
+    alpha = top sin^2 theta takes both end singularities.
 
     Split where the law changes its formula: no piece of the work is integrated across a kink.
     """
-    edges = [np.zeros_like(top), *(np.minimum(kink, top) for kink in law.kinks()), top]
+    edges = [start, *(np.clip(kink, start, top) for kink in law.kinks()), top]
     total, above = np.zeros_like(top), np.zeros_like(top)  # above: work from the upper edge of the piece to the top
     for low, high in reversed(list(zip(edges[:-1], edges[1:], strict=True))):
         left, right = (np.arcsin(np.sqrt(edge / top)) for edge in (low, high))
@@ -111,7 +112,7 @@ def impact(law: Curve, *, m_star: Real, speed: Real) -> Impact:
     top = np.asarray(law.overlap_of_work(W), float)
     elastic = top <= law.yield_overlap
     out = np.where(elastic, W, np.minimum(law.recovered_work(top), W))
-    time, dent = _loading_time(law, m, top), np.asarray(law.residual_overlap(top))
+    time = loading_time(law, m, top, np.zeros_like(top))
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
     return Impact(
         e_n=np.where(elastic, 1.0, np.sqrt(out / W)),
@@ -119,8 +120,7 @@ def impact(law: Curve, *, m_star: Real, speed: Real) -> Impact:
         force_max=np.asarray(law.force(top)),
         overlap_max=top,
         radius_max=np.asarray(law.radius(top)),
-        residual_overlap=dent,
-        parting_overlap=dent,
+        residual_overlap=np.asarray(law.residual_overlap(top)),
         work_in=W,
         work_out=out,
         plastic_work=np.asarray(law.plastic_work(top)),

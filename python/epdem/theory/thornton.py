@@ -36,13 +36,6 @@ class Thornton(Backbone):
         x = np.maximum(alpha - y, 0.0)
         return self._hertz_work(np.minimum(alpha, y)) + slope * x * (2 / 3 * y + x / 2)
 
-    def overlap_of_work(self, W: Real) -> Real:
-        y, slope = self.yield_overlap, np.pi * self.p_y * self.R_star
-        more = np.maximum(W - self._hertz_work(y), 0.0)
-        h = 2 / 3 * y
-        x = 2 * more / slope / (h + np.sqrt(h * h + 2 * more / slope))  # the root without cancellation
-        return np.where(more > 0, y + x, self._hertz_overlap(np.asarray(W)))
-
     def _beyond_yield(self, alpha_max: Real) -> tuple[Real, Real]:
         """t = sqrt(alpha_max/alpha_y), at least 1, and t - 1 without cancellation."""
         x = np.maximum(alpha_max - self.yield_overlap, 0.0) / self.yield_overlap

@@ -10,26 +10,19 @@ and a phase that grows by x^(1/4) dt, u'' + 2 zeta u' + u = 0. The branch of a f
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 
 from . import restitution as undamped
 from .curve import Curve
-from .numerics import Array, Real, bisect, gauss, number, zero
+from .numerics import Array, Real, bisect, gauss, number
 
 RESTITUTION_MIN = 0.14  # the formula's limit for zeta -> 1 is exp(-2) = 0.135
 Rate: TypeAlias = Callable[[Array], Array]  # of states (k, n): one number or their change for each
 _STEP = 1 / 8  # of theta; the extrapolation below then leaves 1e-12
 _X, _W = gauss(32)
-
-
-@dataclass(frozen=True)
-class DampedImpact(undamped.Impact):
-    """As without a dashpot, but force_max and residual_overlap are those of the total force with the dashpot."""
-
-    viscous_work: Array  # lost beside plastic_work [J]: to the dashpot, or still stored when the bodies part
 
 
 def damping_ratio(e: Real) -> Array:
@@ -63,24 +56,8 @@ def _end(f: Rate, y: Array, going: Rate) -> Array:
         before, y = np.where(active, y, before), np.where(active, _advance(f, y, _STEP), y)
     else:
         raise ArithmeticError("the impact does not end")
-    n = y.shape[1]
-    return _advance(f, before, zero(lambda h: going(_advance(f, before, h)), np.zeros(n), np.full(n, _STEP)))
-
-
-def _yielding_time(law: Curve, m: Array, start: Array, top: Array) -> Array:
-    """Time on the backbone from overlap `start` to rest at `top`: quadrature in c, alpha = top - (top - start) c^2."""
-    edges = [start, *(np.clip(kink, start, top) for kink in law.kinks()), top]
-    total = np.zeros_like(top)
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
-        far, near = (np.sqrt((top - x) / (top - start)) for x in (a, b))
-        c = near[:, None] + (far - near)[:, None] * _X
-        width = np.maximum((top - start)[:, None] * c * c, np.finfo(float).tiny)  # a piece may be empty
-        alpha = top[:, None] - width
-        mean = sum(w * law.force(alpha + width * x) for x, w in zip(_X, _W, strict=True))
-        exact = (law.work(top[:, None]) - law.work(alpha)) / width  # loses digits near the top, kinks spoil the other
-        mean = np.where(width < 1e-3 * top[:, None], mean, exact)
-        total += (far - near) * ((2 * np.sqrt((top - start)[:, None] * m[:, None] / (2 * mean))) @ _W)
-    return total
+    _, h = bisect(lambda h: going(_advance(f, before, h)) > 0, np.zeros(y.shape[1]), _STEP, steps=50)
+    return _advance(f, before, h)
 
 
 @dataclass(frozen=True)
@@ -175,16 +152,17 @@ def _rebound(law: Curve, top: Array, L: Array, V: Array, m: Array, motion: _Osci
     return (u / rest) ** 0.8 * one, rate / rest * one, time * one
 
 
-def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> DampedImpact:
+def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> undamped.Impact:
     """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
 
-    restitution in [0.14, 1] is that of impacts that do not yield. Raises ValueError for values outside.
+    restitution in [0.14, 1] is that of impacts that do not yield. force_max and residual_overlap are those of the total
+    force. Raises ValueError for values outside.
     """
     zeta = float(damping_ratio(restitution))
     m, v = np.broadcast_arrays(number("m_star", m_star), number("speed", speed))
     plain = undamped.impact(law, m_star=m, speed=v)
     if zeta == 0.0:
-        return DampedImpact(**{f.name: getattr(plain, f.name) for f in fields(plain)}, viscous_work=np.zeros(v.shape))
+        return plain
     shape, m, v = v.shape, m.ravel(), v.ravel()
     W = 0.5 * m * v * v
     motion, own = _Oscillator(zeta), (15 * m * v * v / (16 * law.E_star * np.sqrt(law.R_star))) ** 0.4
@@ -205,12 +183,11 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Damp
         V = np.sqrt(2 * given / m_y)
         x, rate, after = _rebound(law, summit, recovery, V, m_y, motion)
         time[yielded] = unit_time[yielded] * motion.time(phase) + recovery / V * after
-        time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit)
+        time[yielded] += undamped.loading_time(law, m_y, summit, np.full(summit.shape, y))
         top[yielded], back[yielded], parting[yielded] = summit, -V * rate, summit - recovery * (1 - x)
         before = unit_force[yielded] * motion.force(np.minimum(phase, motion.summit))
         force_max[yielded] = np.maximum(before, law.force(summit))
         W_plastic[yielded] = law.plastic_work(summit)
-    work_out = 0.5 * m * back * back
     columns = {
         "e_n": back / v,
         "contact_time": time,
@@ -218,10 +195,8 @@ def impact(law: Curve, *, m_star: Real, speed: Real, restitution: float) -> Damp
         "overlap_max": top,
         "radius_max": law.radius(top),
         "residual_overlap": parting,
-        "parting_overlap": parting,
         "work_in": W,
-        "work_out": work_out,
+        "work_out": 0.5 * m * back * back,
         "plastic_work": W_plastic,
-        "viscous_work": W - work_out - W_plastic,
     }
-    return DampedImpact(**{name: np.reshape(column, shape) for name, column in columns.items()})
+    return undamped.Impact(**{name: np.reshape(column, shape) for name, column in columns.items()})
