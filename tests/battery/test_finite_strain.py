@@ -12,7 +12,7 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
-from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.comparison import compare
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -111,7 +111,7 @@ def error(tool, x, folder=None):
     p, prediction = plan(x, predict(x)), predict(x)
     tool.write(p, folder)
     path = tool.run(p, folder)
-    table = impacts_table(p, measure(p, path))
+    table = measure(p, path)
     return compare(tool.name, x.law.name, table, prediction, x.check)["e_n_error"].max()
 
 

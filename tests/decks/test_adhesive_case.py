@@ -12,7 +12,7 @@ from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError
-from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.comparison import compare
 from epdem.impacts.engine import check_features
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
@@ -105,7 +105,7 @@ def test_a_law_that_lets_go_where_theory_sticks_fails():
     x = made(impact=read_toml(CASE)["impact"] | {"speeds": ["0.01 m/s", "0.1 m/s"]})
     prediction = predict(x)
     p = plan(x, prediction)
-    measured = impacts_table(p, measure(p, engine("embedded").run(p, Path())))
+    measured = measure(p, engine("embedded").run(p, Path()))
     assert compare("e", "l", measured, prediction, x.check)["passed"].all()
     wrong = measured.assign(e_n=measured["e_n"][::-1].to_numpy())
     assert not compare("e", "l", wrong, prediction, x.check)["passed"].any()

@@ -10,7 +10,7 @@ import pytest
 from epdem.case.impact import Check, Numerics, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
-from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.comparison import compare
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -34,7 +34,7 @@ def rows(name, law, steps, speed, folder, yield_stress="1.0 GPa", restitution=No
     p = plan(x, prediction)
     tool = engine(name)
     tool.write(p, folder)
-    return compare(name, law, impacts_table(p, measure(p, tool.run(p, folder))), prediction, Check())
+    return compare(name, law, measure(p, tool.run(p, folder)), prediction, Check())
 
 
 @pytest.mark.parametrize("name", ENGINES)

@@ -101,8 +101,8 @@ def test_dashpot_gives_the_restitution_of_the_damped_law(tmp_path):
 
 def test_partial_slip_gives_the_rebound_of_maw_barber_and_fawcett(tmp_path):
     p, prediction = prepared("oblique_steel")
-    found = measure(p, impacts(p, tmp_path, tangential="partial_slip")).rebound
-    assert found is not None and prediction.rebound is not None
+    found = measure(p, impacts(p, tmp_path, tangential="partial_slip"))
+    assert prediction.rebound is not None
     assert np.nanmax(np.abs(found.psi_2 - p.each(prediction.rebound.psi_2))) <= 0.02
 
 

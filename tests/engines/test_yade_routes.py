@@ -69,8 +69,7 @@ def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine
 
 
 def error_of_psi_2(p, prediction, found):
-    rebound = measure(p, found).rebound
-    return np.nanmax(np.abs(rebound.psi_2 - p.each(prediction.rebound.psi_2)))
+    return np.nanmax(np.abs(measure(p, found)["psi_2"] - p.each(prediction.rebound.psi_2)))
 
 
 @pytest.mark.liggghts

@@ -6,9 +6,6 @@ import pandas as pd
 
 from ..base.tables import Column
 from ..case.impact import Check
-from .measurement import COLUMNS as MEASURED
-from .measurement import Measurement
-from .plan import Plan
 from .prediction import Prediction
 
 CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
@@ -46,14 +43,6 @@ COLUMNS = {
     "force": Column("N", "normal force"),
 }
 UNITS = {name: column.unit for name, column in COLUMNS.items() if column.unit}
-
-
-def impacts_table(plan: Plan, measured: Measurement) -> pd.DataFrame:
-    """One row per impact: speed, gap and all measured quantities."""
-    columns = {"speed": plan.speed, "gap": plan.gap}
-    if measured.rebound:
-        columns |= measured.rebound.columns()
-    return pd.DataFrame(columns | {name: getattr(measured, name) for name in MEASURED})
 
 
 def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:

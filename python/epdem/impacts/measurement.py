@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Restitution, times, peaks and energies of the impacts of a trajectory; independent of engines."""
 
-from dataclasses import dataclass, fields
-
 import numpy as np
 import pandas as pd
 
@@ -15,115 +13,65 @@ CHOSEN = 3  # speeds: the lowest, that in the middle, the highest
 SAMPLES = 200  # of each, about
 
 
-@dataclass(frozen=True)
-class Measurement:
-    """One value per impact, arrays of shape (n,), SI.
-
-    energy_residual compares the sampled work in and out with the law's plastic work at the sampled peak,
-    relative to the kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity
-    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work does not follow from the
-    samples, and for a law that is not the plan's.
-    """
-
-    e_n: np.ndarray
-    contact_time: np.ndarray
-    force_max: np.ndarray
-    overlap_max: np.ndarray
-    residual_overlap: np.ndarray
-    energy_residual: np.ndarray
-    steps_in_contact: np.ndarray
-    rebound: oblique.Rebound | None = None  # of oblique impacts
-
-
-COLUMNS = tuple(f.name for f in fields(Measurement) if f.type is np.ndarray)
-
-
 def _last(valid: np.ndarray) -> np.ndarray:
     return np.asarray(valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1))
 
 
-def measure(plan: Plan, path: Trajectory) -> Measurement:
-    """The impacts of a trajectory. Raises EngineError if a contact never began or never ended."""
-    law = plan.experiment.theory()
-    if plan.experiment.law.adheres:
-        return _with_adhesion(plan, path)
+def measure(plan: Plan, path: Trajectory) -> pd.DataFrame:
+    """One row per impact: speed, gap, the rebound of oblique ones, and what is measured; SI.
+
+    energy_residual compares the sampled work in and out with the law's work lost at the sampled peak, relative to the
+    kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity Verlet fulfils for
+    any force, it is evidence for the law. NaN with a dashpot, whose work does not follow from the samples, and for a law
+    that is not the plan's. With adhesion bodies that are still in contact at the end stick: e_n = 0, no end. Raises
+    EngineError if a contact never began, or without adhesion never ended.
+    """
+    x, dt, row, adheres = plan.experiment, path.time_step, np.arange(plan.n), plan.experiment.law.adheres
     overlap, force, velocity = path.overlap, path.force, path.velocity
-    row = np.arange(plan.n)
     sampled = np.isfinite(force)
-    loaded = sampled & (force > 0)
-    touched = loaded.any(axis=1)
-    last, end = _last(loaded), _last(sampled)
-    for bad, what in ((~touched, "never touched"), (touched & (last == end), "was still in contact at the end")):
+    loaded = sampled & ((force != 0) if adheres else (force > 0))
+    touched, last, end = loaded.any(axis=1), _last(loaded), _last(sampled)
+    stuck = last == end
+    for bad, what in (
+        (~touched, "never touched"),
+        (touched & stuck & (not adheres), "was still in contact at the end"),
+    ):
         if bad.any():
             raise EngineError(f"the impact at {plan.speed[bad][0]:.6g} m/s {what}; the run is too short or went wrong")
-
-    # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
-    # with a dashpot, which cuts the force off early, F itself does.
-    own = path.end_power is None and plan.experiment.viscous_number == 0
-    power = path.end_power or (2 / 3 if own else 1.0)
+    own = path.end_power is None and x.viscous_number == 0
     before = np.maximum(last - 1, 0)
-    root_last, root_before = (np.abs(force[row, k]) ** power for k in (last, before))
-    share = np.divide(root_last, root_before - root_last, out=np.full(plan.n, 0.5), where=root_before > root_last)
-    share = np.minimum(share, 1.0)  # the next sample is unloaded
-    contact_time = (last + share) * path.time_step - plan.gap / plan.speed
-    residual = overlap[row, last] - share * (overlap[row, before] - overlap[row, last])
-
-    force_max = np.where(loaded, force, 0.0).max(axis=1)
+    way = overlap[row, last] - overlap[row, before]
+    if adheres:
+        # The last step with a force, of either sign, is the first apart: the bodies part within it. By the momentum of
+        # the pull, which it then has for the share s of a step, m* (v_after - v_before) = -F_last s dt.
+        push, gained = force[row, before] * dt / x.m_star, velocity[row, before] - velocity[row, end]
+        last, share = before, np.divide(gained, push, out=np.full(plan.n, 0.5), where=push != 0)
+    else:
+        # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
+        # with a dashpot, which cuts the force off early, F itself does.
+        power = path.end_power or (2 / 3 if own else 1.0)
+        root, earlier = (np.abs(force[row, k]) ** power for k in (last, before))
+        share = np.divide(root, earlier - root, out=np.full(plan.n, 0.5), where=earlier > root)
+    share = np.clip(share, 0.0, 1.0)  # the next sample is apart
     peak = np.where(sampled, overlap, -np.inf).max(axis=1)
-    energy = 0.5 * plan.experiment.m_star * plan.speed**2
     # at the dent, between two samples, the force is 0 and so is the last piece of work, to third order
     work = force[:, 1:] + force[:, :-1]
     work *= overlap[:, 1:] - overlap[:, :-1]
-    work[~(loaded[:, 1:] | loaded[:, :-1])] = 0.0
-    lost = law.lost_work(peak)
-    e_n = -velocity[row, end] / plan.speed
-    rebound = None
+    residual = (0.5 * np.nansum(work, axis=1) - x.theory().lost_work(peak)) / (0.5 * x.m_star * plan.speed**2)
+    e_n = np.where(stuck, 0.0, -velocity[row, end] / plan.speed)
+    columns = {"speed": plan.speed, "gap": plan.gap}
     if path.tangential is not None and path.spin is not None:
-        rebound = oblique.rebound(plan.experiment, e_n, tangential=path.tangential, spin=path.spin)
-    return Measurement(
-        e_n=e_n,
-        contact_time=contact_time,
-        force_max=force_max,
-        overlap_max=peak,
-        residual_overlap=residual,
-        energy_residual=(0.5 * work.sum(axis=1) - lost) / energy if own else np.full(plan.n, np.nan),
-        steps_in_contact=loaded.sum(axis=1),
-        rebound=rebound,
-    )
-
-
-def _with_adhesion(plan: Plan, path: Trajectory) -> Measurement:
-    """As `measure`: in contact as long as there is a force, of either sign; the last step with one is the first apart.
-
-    The bodies part within that step. By the momentum of the pull, which it then has for the share s of a step,
-    m* (v_after - v_before) = -F_last s dt. Those still in contact at the end stick: e_n = 0, no end.
-    """
-    x, dt, row = plan.experiment, path.time_step, np.arange(plan.n)
-    overlap, force, velocity = path.overlap, path.force, path.velocity
-    sampled = np.isfinite(force)
-    loaded = sampled & (force != 0)
-    if not loaded.any(axis=1).all():
-        bad = plan.speed[~loaded.any(axis=1)][0]
-        raise EngineError(f"the impact at {bad:.6g} m/s never touched; the run is too short or went wrong")
-    apart, end = _last(loaded), _last(sampled)
-    stuck, last = apart == end, np.maximum(apart - 1, 0)
-    push = force[row, last] * dt / x.m_star
-    gained = velocity[row, last] - velocity[row, end]
-    share = np.clip(np.divide(gained, push, out=np.full(plan.n, 0.5), where=push != 0), 0.0, 1.0)
-    between = overlap[row, last] + share * (overlap[row, apart] - overlap[row, last])
-    peak = np.where(sampled, overlap, -np.inf).max(axis=1)
-    work = 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap)
-    lost = x.theory().lost_work(peak)
-    nothing = np.full(plan.n, np.nan)
-    return Measurement(
-        e_n=np.where(stuck, 0.0, -velocity[row, end] / plan.speed),
-        contact_time=np.where(stuck, np.inf, (last + share) * dt - plan.gap / plan.speed),
-        force_max=np.where(loaded, force, -np.inf).max(axis=1),
-        overlap_max=peak,
-        residual_overlap=np.where(stuck, nothing, between),
-        energy_residual=np.where(stuck, nothing, (np.nansum(work, axis=1) - lost) / (0.5 * x.m_star * plan.speed**2)),
-        steps_in_contact=loaded.sum(axis=1),
-    )
+        columns |= oblique.rebound(x, e_n, tangential=path.tangential, spin=path.spin).columns()
+    columns |= {
+        "e_n": e_n,
+        "contact_time": np.where(stuck, np.inf, (last + share) * dt - plan.gap / plan.speed),
+        "force_max": np.where(loaded, force, -np.inf).max(axis=1),
+        "overlap_max": peak,
+        "residual_overlap": np.where(stuck, np.nan, overlap[row, last] + share * way),
+        "energy_residual": np.where(stuck | (not own), np.nan, residual),
+        "steps_in_contact": loaded.sum(axis=1),
+    }
+    return pd.DataFrame(columns)
 
 
 def sample_impacts(plan: Plan, path: Trajectory) -> pd.DataFrame:

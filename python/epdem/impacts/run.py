@@ -19,7 +19,7 @@ from ..errors import CaseError
 from ..jobs.engine import Feature, require
 from ..jobs.stage import Inputs, Stage, Tables, compute, inputs
 from . import store
-from .comparison import compare, impacts_table
+from .comparison import compare
 from .engine import ImpactEngine, Trajectory, check_plan
 from .experiment import Experiment, experiment
 from .measurement import measure, sample_impacts
@@ -49,7 +49,7 @@ class Outcome:
 def run_plan(
     p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, version: str = "", stored: Stage | None = None
 ) -> Stage:
-    """Tables `impacts` (see `impacts_table`) and `paths` (chosen impacts step by step) of a plan: the `stored` ones, or
+    """Tables `impacts` (see `measure`) and `paths` (chosen impacts step by step) of a plan: the `stored` ones, or
     those of a run in `folder`.
 
     version: of the engine, for results that are stored. Raises EngineError, and CaseError for what the engine cannot
@@ -57,7 +57,7 @@ def run_plan(
     """
 
     def read(path: Trajectory) -> tuple[Tables, dict[str, float]]:
-        tables = {"impacts": impacts_table(p, measure(p, path)), "paths": sample_impacts(p, path)}
+        tables = {"impacts": measure(p, path), "paths": sample_impacts(p, path)}
         return tables, {f"seconds_{name}": seconds for name, seconds in path.seconds.items()}
 
     now = inputs(tool, p, version=version, facts=_facts(p), ranks=ranks)
