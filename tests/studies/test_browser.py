@@ -23,7 +23,7 @@ CHROMIUM = shutil.which("chromium")
 PICTURES = os.environ.get("EPDEM_BROWSER_PICTURES")
 SEEN = """<script>
 const errors = [], heads = [...document.querySelectorAll("table.sorts")][0].querySelectorAll("th");
-const column = () => [...heads[0].closest("table").tBodies[0].rows].map(row => Number(row.children[2].dataset.key));
+const column = () => [...heads[0].closest("table").tBodies[0].rows].map(row => Number(row.children[2].textContent));
 const before = column();
 heads[2].querySelector("button").click();
 const up = column();

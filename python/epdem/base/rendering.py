@@ -31,7 +31,7 @@ OPTIONS: dict[str, Any] = {
     "trim_blocks": True,
     "lstrip_blocks": True,
     "keep_trailing_newline": True,
-    "autoescape": False,  # decks are no HTML
+    "autoescape": jinja2.select_autoescape(["html.j2"], default_for_string=False),  # decks are no HTML
 }
 Prepared = TypeVar("Prepared", bound=jinja2.Environment)
 

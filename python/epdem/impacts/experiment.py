@@ -170,24 +170,19 @@ def strain_rate(speed: Real, a: Real, *, share: float) -> Real:
     return 0.2 * share * speed / a
 
 
-def apply_rate(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
-    """The law with its strengths at the strain rate of an impact at `speed` [m/s], `strain_rate` at its largest a.
+def at_rate(x: Experiment, rate: Rate | None) -> Experiment:
+    """The experiment with the strengths at the strain rate of its median speed, `strain_rate` at its largest a.
 
-    One strength serves all speeds of a case: the rate belongs to the
-    median speed, and a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
+    One strength serves all speeds: a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
     """
-    if find_law(spec.name).strength is None:
-        return spec
-    E_star = float(pair.E_star(body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio))
-    R_star, m_star = float(pair.R_star(body.radius, target.radius)), float(pair.m_star(body.mass, target.mass))
-    factor, found = 1.0, spec
+    if rate is None or find_law(x.law.name).strength is None:
+        return x
+    factor, found, speed = 1.0, x, float(np.sort(x.speed)[x.speed.size // 2])
     for _ in range(20):  # the factor hardly changes the radius: three digits a turn
-        found = spec.of(*(factor * s for s in spec.strengths))
-        theory, work = found.theory(E_star=E_star, R_star=R_star, radius=body.radius), 0.5 * m_star * speed**2
-        a = float(theory.radius_of_work(work))
-        factor = 1.0 + rate.sensitivity * math.log(
-            max(float(strain_rate(speed, a, share=found.share)) / rate.reference, 1.0)
-        )
+        found = replace(x, law=x.law.of(*(factor * s for s in x.law.strengths)), rated=True)
+        a = float(found.theory().radius_of_work(0.5 * x.m_star * speed**2))
+        ratio = float(strain_rate(speed, a, share=found.law.share)) / rate.reference
+        factor = 1.0 + rate.sensitivity * math.log(max(ratio, 1.0))
     return found
 
 
@@ -211,12 +206,8 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     numbers = case.law.numbers
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
         numbers = replace(default_numbers(law), adhesion=numbers.adhesion if find_law(law).adheres else None)
-    spec = pair_of(numbers, body, target)
-    if case.rate:
-        speeds = sorted(case.impact.speed_values())
-        spec = apply_rate(spec, case.rate, body, target, float(speeds[len(speeds) // 2]))
-    return Experiment(
-        law=spec,
+    x = Experiment(
+        law=pair_of(numbers, body, target),
         body=body,
         target=target,
         speed=speed,
@@ -227,8 +218,8 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         name=case.name,
         title=case.case.title,
         source=case.case.source,
-        rated=case.rate is not None,
     )
+    return at_rate(x, case.rate)
 
 
 def one_impact(material: str, radius: str, speed: str, adhesion: str | None) -> list[Experiment]:

@@ -55,16 +55,6 @@ OBLIQUE = [
     ("pass", "{ok}"),
 ]
 FEW = 10  # impacts of each engine and law in the short table
-ROW_KEYS = (
-    "engine",
-    "law",
-    "speed",
-    *(k for n in CHECKED for k in (n, n + "_theory", n + "_error")),
-    "energy_residual",
-    "steps_in_contact",
-    "stuck",
-    "passed",
-)
 
 
 def plain(value: Any) -> Any:
@@ -73,17 +63,9 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def records(rows: pd.DataFrame, keys: Sequence[str] | None = None) -> list[dict[str, object]]:
+def records(rows: pd.DataFrame) -> list[dict[str, object]]:
     """The rows of a table for JSON."""
-    return [{k: plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
-
-
-def _keys(outcome: Outcome) -> tuple[str, ...]:
-    """Columns of the comparison that the document holds."""
-    if not outcome.case.impact.oblique:
-        return ROW_KEYS
-    columns = outcome.results.comparison.columns
-    return (*ROW_KEYS, *(k for k in columns if k not in ROW_KEYS and not k.endswith("_rms")))
+    return [{str(k): plain(value) for k, value in row.items()} for row in rows.to_dict("records")]
 
 
 def run_json(outcome: Outcome) -> str:
@@ -95,7 +77,7 @@ def run_json(outcome: Outcome) -> str:
             "seconds": outcome.seconds,
             "yields": {law: list(p.yields) for law, p in outcome.predictions.items()},
             "warnings": outcome.warnings,
-            "rows": records(outcome.results.comparison, _keys(outcome)),
+            "rows": records(outcome.results.comparison),
         },
         indent=1,
     )

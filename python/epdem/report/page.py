@@ -8,16 +8,13 @@ import base64
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from ..base import __version__, paths
 from ..base.files import write_text
 from .chart import Chart, svg
 
 if TYPE_CHECKING:  # slow to import
-    import jinja2
     import pandas as pd
 
 NAME = "report.html"
@@ -48,10 +45,9 @@ class Rows:
         """The headings: names with their units."""
         return [f"{name} [{self.units[name]}]" if self.units.get(name) else name for name in map(str, self.frame)]
 
-    def cells(self) -> list[list[tuple[str, str]]]:
-        """(text, sort key) of each cell of the first `row_limit` rows."""
-        shown = self.frame.head(self.row_limit)
-        return [[(_cell(v), _key(v)) for v in row] for row in shown.itertuples(index=False)]
+    def cells(self) -> list[list[str]]:
+        """The texts of the first `row_limit` rows."""
+        return [[*map(_cell, row)] for row in self.frame.head(self.row_limit).itertuples(index=False)]
 
     @property
     def row_limit(self) -> int:
@@ -115,31 +111,11 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def _key(value: Any) -> str:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        return str(value)
-    return "" if math.isnan(number) else repr(number)
-
-
-@cache
-def _templates() -> "jinja2.Environment":
-    import jinja2
-
-    return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(paths.beside("templates") / "report"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-
-
 def render(page: Page, mark: str = "") -> str:
     """The page as HTML."""
-    template = _templates().get_template("page.html.j2")
-    return template.render(page=page, mark=mark, drawn=svg, version=__version__)
+    from ..base import rendering  # slow to import
+
+    return rendering.render("report/page.html.j2", page=page, mark=mark, drawn=svg)
 
 
 def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:

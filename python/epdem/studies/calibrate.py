@@ -14,7 +14,7 @@ from ..case.sizes import csv_table, number_in
 from ..case.toml import error_context
 from ..case.units import read_number
 from ..errors import CaseError
-from ..impacts.experiment import Body, Experiment, apply_rate, bodies, pair_of
+from ..impacts.experiment import Body, Experiment, at_rate, bodies, pair_of
 from ..impacts.prediction import predict
 from ..laws.strengths import LEAST_STRENGTH, LawNumbers, find_law, strength_of_hardness
 from ..theory.backbones import Backbone
@@ -93,10 +93,8 @@ class _Uncalibrated:
         """Impacts at `speeds` [m/s] of bodies that all have this strength [Pa], with [rate] at its reference."""
         body, target = bodies(self.case)
         spec = pair_of(replace(self.law, absolute=strength), body, target)
-        if self.case.rate:
-            spec = apply_rate(spec, self.case.rate, body, target, sorted(speeds)[len(speeds) // 2])
         viscous = self.case.viscous.restitution if self.case.viscous else None
-        return Experiment(spec, body, target, np.array(speeds), viscous, rated=self.case.rate is not None)
+        return at_rate(Experiment(spec, body, target, np.array(speeds), viscous), self.case.rate)
 
     def hardening(self, exponent: float) -> "_Uncalibrated":
         """The same with this hardening exponent."""

@@ -32,7 +32,6 @@ from .points import Point, assign, keys_of
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
 STAGES = "stages.json"
-JUDGED = ("case.title", "case.source", "check", "output.color", "scene.measure")  # keys that no engine reads
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 STATES = (WAITING, RUNNING, DONE, FAILED)
 
@@ -89,20 +88,9 @@ class Sweep:
 
     @cached_property
     def identities(self) -> tuple[str, ...]:
-        """The names of the points' folders."""
+        """The names of the points' folders, by what each point sets, the engines and the laws."""
         rest = repr((self.engines, self.laws, self.ranks))
-        data = (self._without_judgement(n) for n in range(1, len(self.points) + 1))
-        return tuple(hashlib.sha256(f"{tables!r}{rest}".encode()).hexdigest()[:32] for tables in data)
-
-    def _without_judgement(self, number: int) -> dict[str, Any]:
-        """The data of a point without the keys of JUDGED, unless the points set them."""
-        data, swept = self.data(number), self.points[number - 1]
-        for key in JUDGED:
-            table, _, name = key.rpartition(".")
-            holder = data.get(table) if table else data
-            if isinstance(holder, dict) and not any(f"{one}.".startswith(f"{key}.") for one in swept):
-                holder.pop(name, None)
-        return data
+        return tuple(hashlib.sha256(f"{point!r}{rest}".encode()).hexdigest()[:32] for point in self.points)
 
     def place(self, number: int) -> str:
         """The number and keys of a point, for messages."""

@@ -24,21 +24,14 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
 
     A point without results has one row. `attrs["units"]` gives the SI units by column.
     """
-    columns: dict[str, list[Any]] = {}
-    count = 0
+    rows: list[dict[str, Any]] = []
     for n, about in enumerate(store.records(sweep, folder), start=1):
-        rows = about.get("rows") or {}
-        size = len(next(iter(rows.values()))) if rows else 1
         head = {"point": n, "folder": f"{store.POINTS}/{sweep.identities[n - 1]}", **_keys(sweep, n)}
         head |= {"status": about["state"], "reason": about.get("reason", "")}
-        for name, value in head.items():
-            columns.setdefault(name, []).extend([value] * size)
-        for name, values in rows.items():
-            filled = columns.setdefault(name, [])
-            filled.extend([None] * (count - len(filled)))
-            filled.extend(values)
-        count += size
-    table = pd.DataFrame({name: values + [None] * (count - len(values)) for name, values in columns.items()})
+        results = about.get("rows") or {}
+        found = zip(*results.values(), strict=True)
+        rows += [head | dict(zip(results, values, strict=True)) for values in found] or [head]
+    table = pd.DataFrame(rows)
     for name in ("engine", "law", "warnings"):
         if name in table:
             table[name] = table[name].fillna("")
