@@ -4,7 +4,7 @@
 Judgement is made anew at each call, from the tables of a run or from stored ones (jobs/stage.py).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -36,6 +36,8 @@ class Outcome:
     results: store.Results
     predictions: dict[str, Prediction]
     plans: dict[str, Plan]  # by law
+    ranks: int
+    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
     seconds: dict[str, float] = field(default_factory=dict)
     reused: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -81,7 +83,8 @@ def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool =
         return tool.write(p, folder)
 
 
-def _stored(path: Path) -> store.Results:
+def stored_results(path: Path) -> store.Results:
+    """The results in a file; none of one that is missing or damaged."""
     try:
         return store.read(path)
     except CaseError:
@@ -116,34 +119,55 @@ def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
     )
 
 
-@dataclass(frozen=True)
-class _Work:
-    """A checked case with its engines and laws."""
-
-    case: Case
-    tools: list[ImpactEngine]
-    versions: dict[str, str]
-    predictions: dict[str, Prediction]
-    plans: list[Plan]
-    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
-
-
-def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Sequence[str], ranks: int) -> _Work:
-    """Check all input and look for every engine, before anything is written or started."""
-    tools = list({tool.name: tool for tool in tools}.values())
-    with error_context(place):
-        chosen: list[str | None] = [*dict.fromkeys(laws)] or [None]
-        experiments = [experiment(case, law) for law in chosen]
-    require(*tools)
-    predictions = {x.law.name: predict(x) for x in experiments}
-    with error_context(place):
-        plans = [plan(x, predictions[x.law.name]) for x in experiments]
-        for p in plans:
+def prepare(loaded: LoadedCase, tools: Sequence[ImpactEngine], laws: Sequence[str], ranks: int, folder: Path) -> Outcome:
+    """An outcome without results: all input is checked before anything is written or started."""
+    case: Case = loaded.model
+    with error_context(loaded.place):
+        experiments = [experiment(case, law) for law in dict.fromkeys(laws or (None,))]
+        predictions = {x.law.name: predict(x) for x in experiments}
+        plans = {x.law.name: plan(x, predictions[x.law.name]) for x in experiments}
+        for law, p in plans.items():
             for tool in tools:
-                check_plan(tool, p, predictions[p.experiment.law.name], ranks=ranks)
+                check_plan(tool, p, predictions[law], ranks=ranks)
     steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
     how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
-    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
+    results = store.Results(case_text=loaded.text)
+    return Outcome(case, folder, results, predictions, plans, ranks, how, warnings=case_warnings(case))
+
+
+def fill(
+    outcome: Outcome,
+    tools: Sequence[ImpactEngine],
+    versions: Mapping[str, str],
+    *,
+    old: store.Results | None = None,
+    progress: Callable[[str], None] = lambda text: None,
+    keep: Callable[[], None] = lambda: None,
+) -> None:
+    """Run each law of an outcome on each engine, or take it from `old` results; `keep` is called after each."""
+    results, rows = outcome.results, []
+    results.attributes = {"case": outcome.case.name, "epdem": __version__}
+    results.attributes |= {f"version_{name}": version for name, version in versions.items()}
+    for law, p in outcome.plans.items():
+        prediction = outcome.predictions[law]
+        outcome.warnings += prediction.warnings
+        outcome.warnings += [f"{tool.name}: {note}" for tool in tools for note in tool.check(p)]
+        results.predictions[law] = prediction.table()
+        for tool in tools:
+            key = f"{law}/{tool.name}"
+            progress(f"{tool.name}, {law}: {p.n} impacts")
+            stored, version = _stage(old, key) if old else None, versions[tool.name]
+            stage = run_plan(p, tool, outcome.folder / key, ranks=outcome.ranks, version=version, stored=stored)
+            results.impacts[key], results.paths[key] = stage.tables["impacts"], stage.tables["paths"]
+            results.runs[key] = stage.seconds | {"inputs": stage.inputs.key, "time_step": p.time_step} | outcome.how
+            decks = {Path(name).name: text for name, text in stage.inputs.files.items() if not name.endswith(".data")}
+            results.decks |= {f"{key}/{name}": text for name, text in decks.items()}
+            if stage.reused:
+                outcome.reused.append(key)
+            outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
+            rows.append(compare(tool.name, law, results.impacts[key], prediction, outcome.case.check))
+            results.comparison = pd.concat(rows, ignore_index=True)
+            keep()
 
 
 def _read(path: Path | str, steps: int | None) -> LoadedCase:
@@ -172,42 +196,16 @@ def run(
     in which there are other files. All input is checked and every engine looked for before anything is written or
     started.
     """
-    model, text, place = case if isinstance(case, LoadedCase) else _read(case, steps)
-    work = _prepare(model, place, engines, laws, ranks)
-    folder = results_folder(out, model.name)
+    loaded = case if isinstance(case, LoadedCase) else _read(case, steps)
+    tools, folder = list({tool.name: tool for tool in engines}.values()), results_folder(out, loaded.model.name)
+    require(*tools)
+    outcome = prepare(loaded, tools, laws, ranks, folder)
+    versions, path = {tool.name: tool.version() for tool in tools}, folder / "results.h5"
     with claim(folder, force=force):
-        return _run(text, work, folder, ranks, fresh, progress)
+        old = stored_results(path)
 
+        def keep() -> None:
+            store.write(path, _merge_earlier(outcome.results, old))
 
-def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
-    stored = folder / "results.h5"
-    old = _stored(stored)
-    attributes = {"case": work.case.name, "epdem": __version__}
-    attributes |= {f"version_{name}": version for name, version in work.versions.items()}
-    results = store.Results(case_text=text, attributes=attributes)
-    plans = {p.experiment.law.name: p for p in work.plans}
-    outcome = Outcome(work.case, folder, results, work.predictions, plans, warnings=case_warnings(work.case))
-    rows = []
-    for p in work.plans:
-        law = p.experiment.law.name
-        prediction = work.predictions[law]
-        outcome.warnings += prediction.warnings
-        outcome.warnings += [f"{tool.name}: {note}" for tool in work.tools for note in tool.check(p)]
-        results.predictions[law] = prediction.table()
-        for tool in work.tools:
-            key = f"{law}/{tool.name}"
-            progress(f"{tool.name}, {law}: {p.n} impacts")
-            stored_stage = None if fresh else _stage(old, key)
-            version = work.versions[tool.name]
-            stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks, version=version, stored=stored_stage)
-            results.impacts[key], results.paths[key] = stage.tables["impacts"], stage.tables["paths"]
-            results.runs[key] = stage.seconds | {"inputs": stage.inputs.key, "time_step": p.time_step} | work.how
-            decks = {Path(name).name: text for name, text in stage.inputs.files.items() if not name.endswith(".data")}
-            results.decks |= {f"{key}/{name}": text for name, text in decks.items()}
-            if stage.reused:
-                outcome.reused.append(key)
-            outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
-            rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
-            results.comparison = pd.concat(rows, ignore_index=True)
-            store.write(stored, _merge_earlier(results, old))  # results are stored after each engine
+        fill(outcome, tools, versions, old=None if fresh else old, progress=progress, keep=keep)
     return outcome

@@ -3,8 +3,8 @@
 
 The name of a folder is the hash of the data that the engines get and of the engines, so that a sweep that has grown or
 changed finds again what is finished. `point.json` is written whole or not at all: state and results never disagree.
-While a point runs it has `running.json` instead. `stages.json` holds the tables of impacts, which are judged anew when
-the case or epdem has changed and the inputs of the engines have not.
+While a point runs it has `running.json` instead. `results.h5` of an engine with decks holds its tables, which are judged
+anew when the case or epdem has changed and the inputs of the engine have not.
 """
 
 import copy
@@ -18,7 +18,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
 import tomlkit
 
 from ...base import paths
@@ -27,11 +26,9 @@ from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import file_names
 from ...errors import CaseError
-from ...jobs.stage import Inputs, Stage
 from .points import Point, assign, keys_of
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
-STAGES = "stages.json"
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 STATES = (WAITING, RUNNING, DONE, FAILED)
 
@@ -192,27 +189,6 @@ def end(
     }
     write_text(place / FINISHED, json.dumps(about | state | {"rows": rows or {}}), sync=False)
     (place / STARTED).unlink(missing_ok=True)
-
-
-def write_stages(place: Path, stages: dict[str, Stage]) -> None:
-    """Store the impacts of each law and engine of a point."""
-    content = {
-        name: {"key": s.inputs.key, "seconds": s.seconds, "impacts": s.tables["impacts"].to_dict("list")}
-        for name, s in stages.items()
-    }
-    write_text(place / STAGES, json.dumps(content), sync=False)
-
-
-def read_stages(place: Path) -> dict[str, Stage]:
-    """Stages that `write_stages` stored; none of a file that is missing or damaged."""
-    try:
-        content = json.loads((place / STAGES).read_text(encoding="utf-8"))
-        return {
-            name: Stage(Inputs({}, s["key"]), {"impacts": pd.DataFrame(s["impacts"])}, s["seconds"])
-            for name, s in content.items()
-        }
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return {}
 
 
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:

@@ -9,7 +9,7 @@ import shutil
 import tomllib
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,19 +19,14 @@ import pandas as pd
 from ...base.declarations import declarations
 from ...base.files import claim
 from ...case import impact, scene
-from ...case.plausibility import case_warnings
 from ...case.scene import is_scene
-from ...case.toml import error_context, portable_text, with_whole_paths
+from ...case.toml import LoadedCase, error_context, portable_text, with_whole_paths
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.comparison import compare
-from ...impacts.engine import check_plan
-from ...impacts.experiment import Experiment, experiment
-from ...impacts.plan import plan as plan_impacts
-from ...impacts.prediction import predict
-from ...impacts.run import run_plan
+from ...impacts import store as store_impacts
+from ...impacts.experiment import experiment
+from ...impacts.run import fill, prepare, stored_results
 from ...jobs.engine import Feature, require
-from ...jobs.stage import Stage
 from ...scenes.plan import plan as plan_scene
 from ...scenes.run import run as run_scene
 from . import folder as store
@@ -56,21 +51,17 @@ def check(sweep: Sweep, number: int, *, plans: bool = False) -> CaseError | None
                     scene_engine(sweep.engines[0]).check(plan_scene(parsed))
             return None
         case = impact.parse(data, place)
+        if plans:
+            numerics = case.numerics.model_copy(update={"error": None})  # no search
+            loaded = LoadedCase(case.model_copy(update={"numerics": numerics}), "", place)
+            prepare(loaded, [*map(engine, sweep.engines)], sweep.laws, sweep.ranks, Path())
+            return None
         with error_context(place):
             for law in sweep.laws or (None,):
-                x = experiment(case, law)
-                if plans:
-                    _check_engines(sweep, replace(x, numerics=x.numerics.model_copy(update={"error": None})))
+                experiment(case, law)
     except CaseError as error:
         return error
     return None
-
-
-def _check_engines(sweep: Sweep, x: Experiment) -> None:
-    prediction = predict(x)
-    p = plan_impacts(x, prediction)
-    for name in sweep.engines:
-        check_plan(engine(name), p, prediction, ranks=sweep.ranks)
 
 
 def evaluate(sweep: Sweep, folder: Path, number: int) -> None:
@@ -96,25 +87,15 @@ def evaluate(sweep: Sweep, folder: Path, number: int) -> None:
 
 
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
-    case, tables = impact.parse(sweep.data(number), sweep.place(number)), []
-    stored, kept = store.read_stages(place), dict[str, Stage]()
-    for law in sweep.laws or (None,):
-        x = experiment(case, law)
-        prediction = predict(x)
-        p = plan_impacts(x, prediction)
-        for tool in map(engine, sweep.engines):
-            check_plan(tool, p, prediction, ranks=sweep.ranks)
-            key, has_deck = f"{x.law.name}/{tool.name}", Feature.DECK in tool.features
-            at, version = place / key if has_deck else place, sweep.versions[tool.name]
-            stage = run_plan(p, tool, at, ranks=sweep.ranks, version=version, stored=stored.get(key))
-            if has_deck:  # others run faster than a table is read
-                kept[key] = stage
-            rows = compare(tool.name, x.law.name, stage.tables["impacts"], prediction, x.check)
-            said = [*case_warnings(case), *prediction.warnings, *tool.check(p)]
-            tables.append(rows.assign(warnings=SEPARATOR.join(said)))
-    if kept:
-        store.write_stages(place, kept)
-    table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
+    """The rows of the impacts of a point. Engines without decks run faster than a file is read."""
+    file, stored, tools = place / store.CASE, place / "results.h5", [*map(engine, sweep.engines)]
+    case = LoadedCase(impact.parse(sweep.data(number), sweep.place(number)), file.read_text(encoding="utf-8"), file)
+    outcome = prepare(case, tools, sweep.laws, sweep.ranks, place)
+    keeps = any(Feature.DECK in tool.features for tool in tools)
+    fill(outcome, tools, sweep.versions, old=stored_results(stored) if keeps else None)
+    if keeps:
+        store_impacts.write(stored, outcome.results)
+    table = outcome.results.comparison.assign(warnings=SEPARATOR.join(outcome.warnings))
     return {str(name): table[name].tolist() for name in table.columns}
 
 
