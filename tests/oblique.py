@@ -84,7 +84,7 @@ def impact(
     """
     theta = np.asarray(number("theta", theta, low_ok=True, high=STEEPEST), float)
     mass, tangent = float(number("mass", mass)), np.tan(theta)
-    _, impulse = rebound(
+    after = rebound(
         law,
         m_star=mass,
         m_tangential=2 / 7 * mass,
@@ -96,7 +96,7 @@ def impact(
         springs=springs,
     )
     e_n = np.asarray(normal_restitution(law, m_star=mass, speed=v_n))
-    f = impulse / (mass * v_n * (1 + e_n))
+    f = 2 / 7 * mass * (tangent * v_n - after) / (mass * v_n * (1 + e_n))
     e_t = 1 - np.divide(f * (1 + e_n), tangent, out=np.full(theta.shape, np.nan), where=tangent > 0)
     turned, patch = np.asarray(spin(f, e_n=e_n, v_n=v_n, R=R)), np.asarray(patch_rebound(f, e_n=e_n, theta=theta))
     return Oblique(f=f, e_n=e_n, e_t=e_t, spin=turned, patch=patch)
@@ -109,7 +109,7 @@ def maw_barber_fawcett(psi_1: Real, *, kappa: float, steps: int = 2000) -> Array
     From psi_1 = 7 kappa - 1 on everything slides: psi_2 = psi_1 - 7 kappa.
     """
     psi_1, kappa = number("psi_1", psi_1, low_ok=True), float(number("kappa", kappa))
-    after, _ = rebound(
+    after = rebound(
         Hertz(E_star=1.0, R_star=1.0),
         m_star=1.0,
         m_tangential=2 / 7,

@@ -43,7 +43,7 @@ def test_rebound_of_the_patch_is_that_of_400_springs(tmp_path, law, times, tange
         tmp_path, model, tan_theta, step=step, times=120, speed=speed, tangential=tangential, extra=SOFT
     )
     assert np.allclose(vz / speed, float(impact.e_n), rtol=2e-3)
-    slip, _ = partial_slip.rebound(
+    slip = partial_slip.rebound(
         backbone,
         m_star=MASS,
         m_tangential=2 / 7 * MASS,

@@ -133,7 +133,7 @@ def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0, loading
 
 def reference(law, psi_1, speed):
     """psi_2 by 400 springs and 2000 steps."""
-    slip, _ = partial_slip.rebound(
+    slip = partial_slip.rebound(
         law,
         m_star=M,
         m_tangential=2 / 7 * M,

@@ -101,18 +101,16 @@ def oblique_impact(E_star, R_star, p_y, mass, G_star, v_n):
 
 def slip_rebound(E_star, R_star, p_y, G_star, m_star, speed, slip):
     both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
-    return list(
-        partial_slip.rebound(
-            both,
-            m_star=m_star,
-            m_tangential=2 / 7 * m_star,
-            mu=0.2,
-            G_star=G_star,
-            v_n=speed,
-            slip=slip,
-            steps=200,
-            springs=40,
-        )
+    return partial_slip.rebound(
+        both,
+        m_star=m_star,
+        m_tangential=2 / 7 * m_star,
+        mu=0.2,
+        G_star=G_star,
+        v_n=speed,
+        slip=slip,
+        steps=200,
+        springs=40,
     )
 
 
@@ -146,7 +144,7 @@ ROWS = [
     Row(oblique.patch_rebound, ANGLE | {"f": (0.2, ONE)}, ONE),
     Row(oblique.sliding_angle, SLIDING, ONE),
     Row(oblique_impact, CONTACT | {"p_y": P, "mass": M_STAR, "G_star": (1e10, PA), "v_n": V}, [ONE, ONE, ONE, -S, ONE]),
-    Row(slip_rebound, IMPACT | {"p_y": P, "G_star": (1e10, PA), "speed": V, "slip": (0.7, SPEED)}, [SPEED, N + S]),
+    Row(slip_rebound, IMPACT | {"p_y": P, "G_star": (1e10, PA), "speed": V, "slip": (0.7, SPEED)}, SPEED),
     Row(oblique.maw_barber_fawcett, {"psi_1": (2.0, ONE), "kappa": (0.8, ONE)}, ONE),
     Row(yielding.yield_speed, IMPACT | {"p_y": P}, SPEED),
     Row(printed.thornton, {"speed": V, "v_y": (0.5, SPEED)}, ONE),

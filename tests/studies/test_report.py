@@ -158,7 +158,7 @@ def test_one_point_has_an_axis_with_room_on_both_sides():
     axes = [chart.Axis("$v$", "m/s", log=True), chart.Axis("$e_n$")]
     figure = chart.draw(chart.Chart("x", "x", "x", [chart.Panel(*axes, [one])]))
     (low, high), (bottom, top) = figure.axes[0].get_xlim(), figure.axes[0].get_ylim()
-    assert (low, high) == (1.0, 4.0) and bottom < 0.3 and top > 0.7
+    assert 0 < low <= 1.0 and high >= 4.0 and bottom < 0.49 and top > 0.51
 
 
 def test_labels_are_mathematics_in_a_drawing_and_plain_in_data():

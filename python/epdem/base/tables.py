@@ -28,18 +28,14 @@ class Column(NamedTuple):
     sentence: str
 
 
-class Hdf5:
-    """An HDF5 file that grows in memory and reaches the disk by `save`, so that a full disk leaves no half file."""
-
-    def __init__(self) -> None:
-        self._bytes = io.BytesIO()
-        self.file = h5py.File(self._bytes, "w", libver="v110")
-
-    def save(self, path: Path) -> None:
-        """Write the file to `path` in place of what is there. Raises OSError and leaves what is there."""
-        self.file.close()
-        with atomic(path) as temporary, temporary.open("wb") as stream:
-            stream.write(self._bytes.getbuffer())
+@contextlib.contextmanager
+def new_file(path: Path) -> Iterator[h5py.File]:
+    """An HDF5 file in memory that replaces `path` at the end of the block: a full disk leaves no half file."""
+    content = io.BytesIO()
+    with h5py.File(content, "w", libver="v110") as file:
+        yield file
+    with atomic(path) as temporary:
+        temporary.write_bytes(content.getbuffer())
 
 
 def write_attributes(target: h5py.HLObject, values: Mapping[str, object]) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..base import paths
 from ..base.declarations import library_path
+from ..case.fields import NODES
 from ..impacts import oblique
 from ..impacts.engine import Trajectory, check_features
 from ..impacts.plan import Plan
@@ -53,7 +54,7 @@ class Embedded(Engine[Plan, Trajectory]):
                 oblique.slip_before(x, phases=job.phases),
                 G_star=x.G_star,
                 mu=x.oblique.friction,
-                nodes=oblique.nodes(x),
+                nodes=NODES[x.oblique.tangential],
                 steps=job.steps,
                 **numbers(job),
             )

@@ -22,9 +22,9 @@ def measure(plan: Plan, path: Trajectory) -> pd.DataFrame:
 
     energy_residual compares the sampled work in and out with the law's work lost at the sampled peak, relative to the
     kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity Verlet fulfils for
-    any force, it is evidence for the law. NaN with a dashpot, whose work does not follow from the samples, and for a law
-    that is not the plan's. With adhesion bodies that are still in contact at the end stick: e_n = 0, no end. Raises
-    EngineError if a contact never began, or without adhesion never ended.
+    any force, it is evidence for the law. NaN with a dashpot, whose work does not follow from the samples, and for
+    another law than the plan's. With adhesion bodies that are still in contact at the end stick: e_n = 0, no end.
+    Raises EngineError if a contact never began, or without adhesion never ended.
     """
     x, dt, row, adheres = plan.experiment, path.time_step, np.arange(plan.n), plan.experiment.law.adheres
     overlap, force, velocity = path.overlap, path.force, path.velocity

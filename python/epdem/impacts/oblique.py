@@ -10,7 +10,6 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..case.fields import NODES
 from ..theory import partial_slip
 from .experiment import Experiment
 
@@ -86,7 +85,7 @@ def predict(x: Experiment, e_n: np.ndarray) -> Rebound:
     after = np.empty(slip.shape)
     for speed in np.unique(x.speed):
         rows = x.speed == speed
-        after[rows], _ = partial_slip.rebound(
+        after[rows] = partial_slip.rebound(
             law,
             m_star=x.m_star,
             m_tangential=2 / 7 * x.m_star,
@@ -99,8 +98,3 @@ def predict(x: Experiment, e_n: np.ndarray) -> Rebound:
         )
     tangential, spin = after_slip(x, after)
     return rebound(x, e_n, tangential=tangential, spin=spin)
-
-
-def nodes(x: Experiment) -> int:
-    """Nodes of partial slip of the case's friction; 0: one spring."""
-    return NODES[x.friction_of_oblique().tangential]

@@ -80,7 +80,7 @@ def predict(experiment: Experiment) -> Prediction:
         yield_speeds={material: float(speed) for material, speed in first_yield.items() if speed is not None},
         rebound=oblique.predict(x, impact.e_n) if x.oblique else None,
         caveats=(
-            *validity.caveats(law, **pair),
+            *law.caveats(**pair),
             *_too_fast(x, impact.radius_max),
             *_turning(x, impact.contact_time, impact.overlap_max),
         ),

@@ -119,7 +119,9 @@ def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
     )
 
 
-def prepare(loaded: LoadedCase, tools: Sequence[ImpactEngine], laws: Sequence[str], ranks: int, folder: Path) -> Outcome:
+def prepare(
+    loaded: LoadedCase, tools: Sequence[ImpactEngine], laws: Sequence[str], ranks: int, folder: Path
+) -> Outcome:
     """An outcome without results: all input is checked before anything is written or started."""
     case: Case = loaded.model
     with error_context(loaded.place):

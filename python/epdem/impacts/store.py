@@ -29,19 +29,17 @@ class Results:
 
 def write(path: Path, results: Results) -> None:
     """Store `results` in the HDF5 file `path` and its comparison as CSV beside it."""
-    stored = h5.Hdf5()
-    file = stored.file
-    h5.write_attributes(file, results.attributes)
-    h5.write_text(file, "case", results.case_text)
-    h5.write_table(file.create_group("comparison"), results.comparison, UNITS)
-    for kind, tables in (("impacts", results.impacts), ("predictions", results.predictions), ("paths", results.paths)):
-        for key, table in tables.items():
-            h5.write_table(file.create_group(f"{kind}/{key}"), table, UNITS)
-    for key, about in results.runs.items():
-        h5.write_attributes(file[f"impacts/{key}"], about)
-    for key, text in results.decks.items():
-        h5.write_text(file, f"decks/{key}", text)
-    stored.save(path)
+    with h5.new_file(path) as file:
+        h5.write_attributes(file, results.attributes)
+        h5.write_text(file, "case", results.case_text)
+        h5.write_table(file.create_group("comparison"), results.comparison, UNITS)
+        for kind in ("impacts", "predictions", "paths"):
+            for key, table in getattr(results, kind).items():
+                h5.write_table(file.create_group(f"{kind}/{key}"), table, UNITS)
+        for key, about in results.runs.items():
+            h5.write_attributes(file[f"impacts/{key}"], about)
+        for key, text in results.decks.items():
+            h5.write_text(file, f"decks/{key}", text)
     h5.write_csv(path.with_suffix(".csv"), results.comparison)
 
 

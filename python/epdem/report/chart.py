@@ -232,20 +232,9 @@ def _scale(axes: "Axes", panel: Panel, *, labels_x: bool, labels_y: bool) -> Non
         setting: dict[str, Any] = {f"{name}scale": "log" if axis.log else "linear"}
         if labelled:
             setting[f"{name}label"] = str(axis)
-        if limits := _limits(axis, [v for s in panel.series for v in np.atleast_1d(getattr(s, name))]):
-            setting[f"{name}lim"] = limits
+        if axis.low is not None or axis.high is not None:
+            setting[f"{name}lim"] = axis.low, axis.high
         axes.set(**setting)
         if axis.ticks:
             getattr(axes, f"set_{name}ticks")(list(axis.ticks), list(axis.ticks.values()))
             getattr(axes, f"{name}axis").set_minor_formatter(NullFormatter())
-
-
-def _limits(axis: Axis, values: Sequence[float]) -> tuple[float | None, float | None] | None:
-    """The limits that an axis requests; room about a single value, which has no range."""
-    if axis.low is not None or axis.high is not None:
-        return axis.low, axis.high
-    finite = [float(v) for v in values if math.isfinite(v) and (v > 0 or not axis.log)]
-    if not finite or min(finite) != max(finite):
-        return None
-    only = finite[0]
-    return (only / 2, only * 2) if axis.log else (only - (abs(only) / 2 or 1.0), only + (abs(only) / 2 or 1.0))

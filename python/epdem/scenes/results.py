@@ -61,22 +61,20 @@ class SceneResults:
 
 def write(path: Path, p: ScenePlan, results: SceneResults) -> None:
     """Store `results` in the HDF5 file `path`, which ParaView shows, and its rows as CSV beside it."""
-    stored = h5.Hdf5()
-    file = stored.file
-    h5.write_attributes(file, {"kind": "scene", **results.attributes})
-    h5.write_text(file, "case", results.case_text)
-    for name, table in results.tables.items():
-        h5.write_table(file.create_group(name), table, units(table))
-    write_vtkhdf(file, p, results.tables)
-    for name, text in results.decks.items():
-        h5.write_text(file, f"decks/{name}", text)
-    group = file.create_group(FILES)
-    for n, (name, content) in enumerate((results.files or {}).items()):
-        data = np.frombuffer(content, np.uint8)
-        h5.write_attributes(
-            group.create_dataset(str(n), data=data, compression="gzip", fletcher32=True), {"name": name}
-        )
-    stored.save(path)
+    with h5.new_file(path) as file:
+        h5.write_attributes(file, {"kind": "scene", **results.attributes})
+        h5.write_text(file, "case", results.case_text)
+        for name, table in results.tables.items():
+            h5.write_table(file.create_group(name), table, units(table))
+        write_vtkhdf(file, p, results.tables)
+        for name, text in results.decks.items():
+            h5.write_text(file, f"decks/{name}", text)
+        group = file.create_group(FILES)
+        for n, (name, content) in enumerate((results.files or {}).items()):
+            data = np.frombuffer(content, np.uint8)
+            h5.write_attributes(
+                group.create_dataset(str(n), data=data, compression="gzip", fletcher32=True), {"name": name}
+            )
     h5.write_csv(path.with_suffix(".csv"), results.tables["rows"])
 
 

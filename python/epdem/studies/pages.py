@@ -24,7 +24,7 @@ from ..impacts.report import against_measured, largest_errors, mark, yielding
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
 from ..report.chart import PALETTE, Axis, Chart, Panel, Series
-from ..report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
+from ..report.page import NAME, Facts, Lines, Page, Part, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
 from ..scenes.plan import ScenePlan
@@ -188,7 +188,6 @@ def impacts_decks(outcome: Outcome) -> list[Lines]:
     ]
 
 
-DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
 TABLES = [
     (
         "stages",
@@ -214,13 +213,8 @@ def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
     shown = charts_of_scene(outcome)
-    pictures = [
-        Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
-        for path in sorted(outcome.folder.glob("*.png"))
-        if path.stem not in DRAWN and not path.stem.startswith("scene_")
-    ]
     engine = str(about["engine"])
-    parts: list[Part] = [*shown[:1], *bed(outcome), *shown[1:], *pictures]
+    parts: list[Part] = [*shown[:1], *bed(outcome), *shown[1:]]
     for name, title, note in TABLES:
         table = tables.get(name)
         if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:

@@ -44,14 +44,11 @@ class AdhesiveCurve(Declared):
 
     def force(self, a: Numbers) -> Numbers:
         """Force F [N] at contact radius a [m] >= 0 while it grows: 4 E* a^3/(3 R*) - P_t, negative where it pulls."""
-        return self._elastic_force(a)
+        return 4 / 3 * self.E_star / self.R_star * a**3 - self.adhesive_load(a)
 
     def adhesive_load(self, a: Numbers) -> Numbers:
         """P_t [N]: the load on a flat punch of radius a [m] that opens the rim by d, sqrt(8 pi E* Gamma a^3)."""
         return 2 * self.E_star * self.c * a * np.sqrt(a)
-
-    def _elastic_force(self, a: Numbers) -> Numbers:
-        return 4 / 3 * self.E_star / self.R_star * a**3 - self.adhesive_load(a)
 
     def slope(self, y: Numbers) -> Numbers:
         """d alpha/dy [sqrt(m)] at y = sqrt(a): 4 y^3/R* - c."""

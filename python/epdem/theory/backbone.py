@@ -7,12 +7,14 @@ from . import restitution as undamped
 from . import viscous, yielding
 from .curve import Curve
 from .law import Law
-from .numerics import Array, Real
+from .numerics import Real
 from .restitution import Impact
 
 
 class Backbone(Curve, Law):
     """A law without adhesion: its curve, and the impacts that follow from any such curve."""
+
+    first_yield_speed = yielding.first_yield_speed
 
     def impact(self, *, m_star: Real, speed: Real, restitution: float | None = None) -> Impact:
         if restitution is None:
@@ -30,9 +32,6 @@ class Backbone(Curve, Law):
 
     def yield_speed(self, *, m_star: Real) -> Real:
         return np.sqrt(2 * self.work(self.yield_overlap) / m_star)
-
-    def first_yield_speed(self, Y: Real, *, m_star: Real) -> Array:
-        return yielding.first_yield_speed(self, Y, m_star=m_star)
 
     def sticking_speed(self, *, m_star: Real) -> Real:
         return 0.0

@@ -18,20 +18,15 @@ class JKR(AdhesiveCurve, Law):
             raise ValueError(f"law {self.name}: no theory of impacts has both adhesion and a dashpot; remove one")
         return adhesion.impact(self, m_star=m_star, speed=speed)
 
-    def lost_work(self, alpha_max: Numbers) -> Numbers:
-        return adhesion.lost_work(self, alpha_max)
+    lost_work = adhesion.lost_work
+    yield_speed = adhesion.yield_speed
+    sticking_speed = adhesion.sticking_speed
 
     def has_yielded(self, impact: Impact) -> bool:
         return bool(impact.radius_max.max() > max(float(self.touch_radius), float(self.yield_radius)))
 
-    def yield_speed(self, *, m_star: Numbers) -> Numbers:
-        return adhesion.yield_speed(self, m_star=m_star)
-
     def first_yield_speed(self, Y: Numbers, *, m_star: Numbers) -> None:
         return None
-
-    def sticking_speed(self, *, m_star: Numbers) -> Numbers:
-        return adhesion.sticking_speed(self, m_star=m_star)
 
     def caveats(self, *, m_star: Numbers, speed: Array) -> list[str]:
         tabor = adhesion.warning(self)

@@ -64,10 +64,6 @@ class Springs:
         self.stretch = trial * share
         return np.asarray(8 * self.G_star * self.width * self.stretch.sum(axis=-1))
 
-    def energy(self) -> Array:
-        """Elastic energy [J] that the springs hold, of the shape of the slips without the components."""
-        return np.asarray(4 * self.G_star * self.width * np.sum(self.stretch**2, axis=(-2, -1)))
-
 
 def rebound(
     law: Curve,
@@ -80,8 +76,8 @@ def rebound(
     slip: Real,
     steps: int = 2000,
     springs: int = 400,
-) -> tuple[Array, Array]:
-    """(slip velocity after the impact [m/s], tangential impulse [N s]) of impacts at v_n [m/s] with `slip` [m/s].
+) -> Array:
+    """Slip velocity [m/s] after impacts at v_n [m/s] with `slip` [m/s]; the impulse is m_tangential times its change.
 
     The two surfaces slip with the effective mass m_tangential [kg], (2/7) m for a solid sphere on a plane, and approach
     with m_star [kg]. slip has any shape, the results have it; `steps` of velocity Verlet in the contact (error about
@@ -92,7 +88,7 @@ def rebound(
     u = np.asarray(slip, float)[..., None]
     line = Springs(G_star=G_star, mu=mu, a_max=float(normal.radius_max), shape=u.shape, springs=springs)
     alpha, v, reached = 0.0, float(v_n), 0.0
-    force, friction, impulse = 0.0, np.zeros(u.shape), np.zeros(u.shape)
+    force, friction = 0.0, np.zeros(u.shape)
     for _ in range(int(1.2 * steps)):
         v -= 0.5 * dt * force / m_star
         u = u - 0.5 * dt * friction / m_tangential
@@ -106,7 +102,6 @@ def rebound(
         friction = line.move(dt * u, force=force, a=a, a_peak=a_peak, flatness=tau)
         v -= 0.5 * dt * force / m_star
         u = u - 0.5 * dt * friction / m_tangential
-        impulse = impulse + dt * friction
         if force == 0 and v < 0:
             break
-    return u[..., 0], impulse[..., 0]
+    return u[..., 0]

@@ -39,7 +39,7 @@ class ThorntonNing(JKR):
     def force(self, a: Numbers) -> Numbers:
         """Force F [N] at contact radius a [m] >= 0 while it grows: JKR up to a_y, then the truncated pressure."""
         a = np.asarray(a, float)
-        return np.where(a <= self.yield_radius, self._elastic_force(a), self._plastic_force(np.sqrt(a), self._core(a)))
+        return np.where(a <= self.yield_radius, super().force(a), self._plastic_force(np.sqrt(a), self._core(a)))
 
     def _core(self, a: Numbers) -> Numbers:
         """sqrt(p_y^2 + 4 A B) [Pa], so that u = (p_y + core)/(2 A)."""

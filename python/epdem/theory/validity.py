@@ -6,8 +6,7 @@ Each law states its own limits (`Law.caveats`); the limits of all laws together 
 
 import numpy as np
 
-from .law import Law
-from .numerics import Array, Real, number
+from .numerics import Array
 
 SMALL_DEFORMATION = 0.3  # strain w a_max/R* above which results are flagged everywhere
 # w a/R* from which finite-element impacts leave the -1/4 law, and by how many percent e_n of cavity exceeds theirs
@@ -18,11 +17,6 @@ OVERESTIMATED = (
     f"small-strain theory overestimates e_n, by {FINITE_STRAIN[SMALL_DEFORMATION]} % at {SMALL_DEFORMATION} (cavity "
     "against Wu et al. 2003), more beyond"
 )
-
-
-def caveats(law: Law, *, m_star: float, speed: Real) -> list[str]:
-    """Sentences, none where all is well, on the law itself at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
-    return law.caveats(m_star=m_star, speed=np.ravel(number("speed", speed)))
 
 
 def finite_strain(largest: float, where: str = "", effect: str = OVERESTIMATED) -> list[str]:

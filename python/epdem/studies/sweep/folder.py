@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sweep on disk: its definition, and for each point a folder with its record.
 
-The name of a folder is the hash of the data that the engines get and of the engines, so that a sweep that has grown or
-changed finds again what is finished. `point.json` is written whole or not at all: state and results never disagree.
-While a point runs it has `running.json` instead. `results.h5` of an engine with decks holds its tables, which are judged
-anew when the case or epdem has changed and the inputs of the engine have not.
+The name of a folder is the hash of what the point sets and of the engines, so that a sweep that has grown finds again
+what is finished. `point.json` is written whole or not at all: state and results never disagree. While a point runs it
+has `running.json` instead. `results.h5`, of engines with decks, holds the tables, which are judged anew when the case
+or epdem has changed and the inputs of the engine have not.
 """
 
 import copy
