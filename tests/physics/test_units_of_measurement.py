@@ -68,6 +68,10 @@ def law_rows(name):
     def e_n(m_star, speed, **numbers):
         return restitution.e_n(law(name, **numbers), m_star=m_star, speed=speed)
 
+    def loading_time(m_star, top, start, **numbers):
+        one = law(name, **numbers)
+        return restitution.loading_time(one, *np.array([[m_star], [top], [start]]))
+
     def backbone(alpha, **numbers):
         one = law(name, **numbers)
         return [one.force(alpha), one.radius(alpha), one.work(alpha), one.unloading_force(0.9 * alpha, alpha)]
@@ -79,6 +83,7 @@ def law_rows(name):
     return [
         Row(impact, both | move, list(units.values()), f"impact[{name}]"),
         Row(e_n, both | move, ONE, f"e_n[{name}]"),
+        Row(loading_time, both | {"m_star": M_STAR, "top": (5e-5, M), "start": (1e-5, M)}, S, f"loading_time[{name}]"),
         Row(backbone, both | {"alpha": (5e-5, M)}, [N, M, J, N], f"backbone[{name}]"),
         Row(first_yield_speed, both | {"m_star": M_STAR, "Y": (0.6e9, PA)}, SPEED, f"first_yield_speed[{name}]"),
     ]
@@ -172,6 +177,7 @@ OTHERWISE = {
     "oblique.impact",
     "restitution.impact",
     "restitution.e_n",
+    "restitution.loading_time",
     "yielding.first_yield_speed",
     "partial_slip.rebound",
 }
