@@ -150,7 +150,7 @@ def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(c
     found = sweep(case, out)
     assert not found.passed and (found.count("done"), found.count("failed")) == (2, 1)
     row = found.table[found.table["point"] == 2]
-    assert row["reason"].tolist() == ["log: out of steel"] and row["passed"].tolist() == [False]
+    assert row["reason"].tolist() == ["thornton/embedded/log: out of steel"] and row["passed"].tolist() == [False]
     assert row[["e_n", "speed"]].isna().all(axis=None)
     assert pd.read_csv(out / "sweep.csv")["status"].tolist() == found.table["status"].tolist()
     assert slurm.status(out)["failures"][0]["reason"] == "log: out of steel"
