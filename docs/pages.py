@@ -3,10 +3,12 @@
 
 import pandas as pd
 
-from epdem.verification.tables import cell
+from epdem.base.terminal import cell
 
 
 def markdown(frame: pd.DataFrame) -> str:
     """A frame as a Markdown table."""
     head = [f"| {' | '.join(map(str, frame.columns))} |", f"|{'---|' * len(frame.columns)}"]
-    return "\n".join(head + [f"| {' | '.join(map(cell, row))} |" for row in frame.itertuples(index=False)])
+    return "\n".join(
+        head + [f"| {' | '.join(cell(value, 3) for value in row)} |" for row in frame.itertuples(index=False)]
+    )

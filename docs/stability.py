@@ -12,6 +12,7 @@ from pathlib import Path
 import pandas as pd
 from pages import markdown
 
+from epdem.base.terminal import cell
 from epdem.theory.backbones import ADHESIVE, LAWS
 from epdem.verification import stability
 from epdem.verification.runner import STUDIES
@@ -30,7 +31,6 @@ from epdem.verification.stability.running import (
     WRONG,
 )
 from epdem.verification.stability.suite import Outcome, summary
-from epdem.verification.tables import cell
 
 
 def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
@@ -42,7 +42,7 @@ def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
         for v in part.itertuples():
             text = {"not representable": "n.r.", "embedded only": "n.a.", "failed": "FAILED"}.get(v.status)
             row[f"{v.engine} {v.law}{v.case.removeprefix(name)}"] = (
-                text or f"{cell(v.useless_at)} / {cell(v.breaks_at)}"
+                text or f"{cell(v.useless_at, 3)} / {cell(v.breaks_at, 3)}"
             )
         rows.append(row)
     return pd.DataFrame(rows).fillna("")

@@ -15,6 +15,7 @@ from calls import CASES, COMMANDS, call, make_sweep, quick_figures
 
 from epdem.base import paths, terminal
 from epdem.base.declarations import declarations
+from epdem.cli.options import answer
 from epdem.engines import ENGINES
 from epdem.engines.citations import of_laws
 from epdem.scenes import report
@@ -185,28 +186,26 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
     check = {"key": "y", "check": "[y]", "value": 1.0, "expected": 1.0, "error": 0.0, "tolerance": 1e-3}
     check |= {"unit": "N", "passed": True}
     tables = {"checks": pd.DataFrame([check]), "rows": pd.DataFrame({"particles": [1]})}
-    report.show(
-        SimpleNamespace(
-            case=SimpleNamespace(
-                name="s",
-                case=SimpleNamespace(title=TITLE),
-            ),
-            results=SimpleNamespace(tables=tables),
-            warnings=["[/y]"],
-            deck=SimpleNamespace(steps=1, time_step=1e-6),
-            plan=SimpleNamespace(
-                steps=1,
-                time_step=1e-6,
-                case=SimpleNamespace(measured=None),
-                scene=SimpleNamespace(stages=None, measure=[]),
-            ),
-            seconds=1.0,
-            reused=False,
-            resumed_from=None,
-            folder="[b]",
+    outcome = SimpleNamespace(
+        case=SimpleNamespace(
+            name="s",
+            case=SimpleNamespace(title=TITLE),
         ),
-        terminal.console(),
+        results=SimpleNamespace(tables=tables),
+        warnings=["[/y]"],
+        deck=SimpleNamespace(steps=1, time_step=1e-6),
+        plan=SimpleNamespace(
+            steps=1,
+            time_step=1e-6,
+            case=SimpleNamespace(measured=None),
+            scene=SimpleNamespace(stages=None, measure=[]),
+        ),
+        seconds=1.0,
+        reused=False,
+        resumed_from=None,
+        folder="[b]",
     )
+    answer(None, report.shown(outcome), as_json=False)
     out = capsys.readouterr().out
     assert TITLE in out and "[y]" in out and "warning: [/y]" in out and "see [b]/" in out
 
@@ -214,8 +213,8 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
 def test_progress_shows_any_text_and_leaves_none_behind(capsys):
     with terminal.status() as progress:
         progress("[/y]")
-    with terminal.bar() as bar:
-        bar.add_task("[/y]", total=2)
+    with terminal.bar("[/y]", "points") as progress:
+        progress(1, 2)
     assert capsys.readouterr() == ("", "")
 
 

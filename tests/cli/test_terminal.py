@@ -49,10 +49,16 @@ def test_a_terminal_has_progress_and_colour_and_a_narrow_one_cuts_no_number(tmp_
     text = shown(RUN, tmp_path, 50)
     plain = ESCAPE.sub("", text)
     assert COLOUR.search(text) and "\x1b[31m" in text  # rows that fail are red
-    assert "figure" in plain and "━━━" in plain and "…" not in plain
+    assert "figure" in plain and "…" not in plain
     rows = [line for line in plain.splitlines() if line.startswith("│")]
     assert len(rows) % 10 == 0 and len(rows) > 10 and all(len(line) <= 50 for line in rows)  # parts of ten rows
     assert "F_max [N]" in plain and "steps" in plain
+
+
+def test_a_terminal_has_a_bar_with_what_is_done_of_a_sweep(tmp_path):
+    words = ["sweep", *RUN[1:4], "--set", "impact.speeds=1 m/s,2 m/s", "-j", "1", "-o", "out"]
+    plain = ESCAPE.sub("", shown(words, tmp_path, 120))
+    assert "━━━" in plain and "/2 points" in plain and "2 of 2 points done" in plain
 
 
 def test_no_color_and_a_dumb_terminal_are_kept(tmp_path):

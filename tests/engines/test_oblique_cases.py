@@ -2,7 +2,6 @@
 """Oblique impacts as cases: input, theory, and every engine beside it."""
 
 import copy
-import json
 import re
 from pathlib import Path
 
@@ -11,10 +10,10 @@ import pytest
 from lammps_decks import needs_lammps
 
 import oblique
-from epdem.base.terminal import console
 from epdem.case import impact as cases
 from epdem.case.toml import LoadedCase, read_toml
 from epdem.cli.main import app
+from epdem.cli.options import answer
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts import report
@@ -116,9 +115,9 @@ def test_liggghts_is_on_theory_and_says_so_in_table_document_and_figure(tmp_path
     # the torque arm of LIGGGHTS is shorter than R by half the overlap: 0.5 % at 2.8 m/s
     assert rows["psi_2_error"].max() < 0.025 and rows["e_n_error"].max() < 1e-3 and found.passed
     assert rows["psi_2_error"][rows["speed"] < 1].max() < 0.006
-    document = json.loads(report.run_json(found))
+    document = report.document(found)
     assert document["rows"][3]["psi_2"] == rows["psi_2"][3] and document["rows"][3]["rebound_angle"] > 0
-    report.show(found, console())
+    answer(document, report.shown(found), as_json=False)
     assert "partial slip" in capsys.readouterr().out
     assert report.figure(found).name == "psi.png"
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measures of scenes: each one against what its definition gives on a bed whose places are known."""
 
-import json
 import math
 from types import SimpleNamespace
 
@@ -11,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from parts_cases import BED, FLOOR, parts
-from rich.console import Console
 from scene_runs import run, write_case
 
 from epdem.case.scene import parse
+from epdem.cli.options import answer
 from epdem.errors import CaseError
 from epdem.laws.strengths import LawSpec
 from epdem.scenes import measures, report
@@ -214,10 +213,10 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     (bins,) = drawn["scene_dents"].panels[0].series
     assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
     assert "Histograms" in write_scene_page(outcome).read_text()
-    report.show(outcome, Console(width=120))
+    answer(None, report.shown(outcome), as_json=False)
     said = capsys.readouterr().out
     dents = spheres_then.query("step == step.max()")["plastic_work"]
-    assert f"{dents.mean():.5g}" in said and f" {found.measures['time'].iloc[-1]:.4g} " in said
+    assert f"{dents.mean():.5g}" in said and f" {found.measures['time'].iloc[-1]:.5g} " in said
 
 
 @pytest.mark.liggghts
@@ -269,9 +268,9 @@ def test_a_force_needs_no_frames_and_is_a_target(frames, tmp_path, capsys):
     outcome = run(path, out=tmp_path / "once")
     peak = -outcome.results.rows["floor_force_z"].min()
     assert peak > 0.01 and outcome.results.rows["lift"].to_list() == outcome.results.rows["floor_force_z"].to_list()
-    report.show(outcome, Console(width=120))
+    answer(None, report.shown(outcome), as_json=False)
     assert f"{-peak:.5g}" in capsys.readouterr().out
-    document = json.loads(report.as_json(outcome))
+    document = report.document(outcome)
     assert document["measures"][0]["lift"] == outcome.results.rows["lift"].iloc[-1]
     write_scene_page(outcome)
     if frames:  # a sweep and a fit of frames: test_a_measure_is_a_target_with_its_unit

@@ -153,7 +153,7 @@ def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(c
     assert row["reason"].tolist() == ["thornton/embedded/log: out of steel"] and row["passed"].tolist() == [False]
     assert row[["e_n", "speed"]].isna().all(axis=None)
     assert pd.read_csv(out / "sweep.csv")["status"].tolist() == found.table["status"].tolist()
-    assert slurm.status(out)["failures"][0]["reason"] == "log: out of steel"
+    assert slurm.status(out)["failures"][0]["reason"] == "thornton/embedded/log: out of steel"
     assert sweep(case, out).ran == 0  # it failed: once is enough
     monkeypatch.setattr(Embedded, "run", real)
     found = sweep(case, out, retry_failed=True)

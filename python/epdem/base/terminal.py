@@ -4,14 +4,19 @@
 import contextlib
 import copy
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, TypeAlias
 
 from rich.cells import cell_len
 from rich.console import Console
-from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
+
+if TYPE_CHECKING:  # slow to import
+    import pandas as pd
+
+Shown: TypeAlias = Table | Text | str  # what `show` prints
 
 
 def console() -> Console:
@@ -28,14 +33,36 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = ()) -> Ta
     return shown
 
 
-def make_table(
-    title: str, columns: Sequence[tuple[str, str]], rows: Iterable[dict[Any, Any]], *, left: Collection[str] = ()
+def cell(value: object, digits: int = 5) -> str:
+    """A value as text: five digits, a dash for NaN, yes or no for a truth value."""
+    if type(value).__name__.startswith("bool"):  # numpy's, too
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return "-" if value != value else f"{value:.{digits}g}"
+    return str(value)
+
+
+def heads(names: Iterable[object], units: Mapping[str, str]) -> dict[str, str]:
+    """The heads of columns: their names with their units."""
+    return {name: f"{name} [{units[name]}]" if units.get(name) else name for name in map(str, names)}
+
+
+def frame_table(
+    title: str, frame: "pd.DataFrame", columns: Mapping[str, str] | None = None, *, digits: int = 5
 ) -> Table:
-    """A table of columns (head, form of a cell, with a row's values by name); a row that has not passed is red."""
-    shown = table(title, [head for head, _ in columns], left=left)
-    for row in rows:
-        shown.add_row(*(form.format(**row) for _, form in columns), style=None if row["passed"] else "red")
+    """The `columns` (head by name; all without any) of a frame, errors with two digits; red: rows not `passed`."""
+    columns = columns or heads(frame, {})
+    left = [head for name, head in columns.items() if frame[name].dtype.kind not in "biufc"]
+    shown, many = table(title, columns.values(), left=left), [2 if n.endswith("error") else digits for n in columns]
+    passed = frame["passed"] if "passed" in frame else [True] * len(frame)
+    for row, good in zip(frame[[*columns]].itertuples(index=False), passed, strict=True):
+        shown.add_row(*map(cell, row, many), style=None if good else "red")
     return shown
+
+
+def warned(warnings: Iterable[str]) -> list[Text]:
+    """Warnings as lines of the terminal."""
+    return [Text(f"warning: {warning}", style="yellow") for warning in warnings]
 
 
 def show_table(screen: Console, shown: Table) -> None:
@@ -61,14 +88,19 @@ def status() -> Iterator[Callable[[str], None]]:
         yield lambda text: line.update(Text(text))
 
 
-def bar(*columns: ProgressColumn) -> Progress:
-    """A progress bar on standard error that vanishes at the end; none where that is no terminal."""
-    return Progress(
+@contextlib.contextmanager
+def bar(what: str, counted: str) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on standard error that vanishes at the end, none where that is no terminal; yields the function
+    that takes how many of the `counted` are done, and of how many."""
+    with Progress(
         TextColumn("{task.description}", markup=False),
         BarColumn(),
-        *columns,
+        TextColumn(f"{{task.completed}}/{{task.total}} {counted}"),
         TimeElapsedColumn(),
+        TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
         disable=not sys.stderr.isatty(),
-    )
+    ) as shown:
+        task = shown.add_task(what, total=None)
+        yield lambda done, total: shown.update(task, completed=done, total=total)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem calibrate`."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..base.terminal import bar
 from ..errors import CaseError
-from .options import AsJson, CasePath, Force, Out, refuse_options
+from .options import AsJson, CasePath, Force, Out, answer, refuse_options
 
 if TYPE_CHECKING:
     from ..studies.calibrate import Calibration
@@ -65,23 +65,21 @@ def calibrate(
     if target or free:
         refuse_options(case, "it does not go with --target and --free", **impacts, **hardness, **curve)
         given = {k: v for k, v in (of_scene | {"force": force}).items() if v is not None}
-        _of_scene(case, target or [], free or [], given, as_json)
-        return
+        raise _of_scene(case, target or [], free or [], given, as_json)
     refuse_options(case, "it goes with --target and --free", **of_scene, force=force)
     from ..studies.calibrate import summary
 
     found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, hardness, indentation)
-    print(json.dumps(vars(found), indent=1) if as_json else "\n".join(summary(found)))
+    raise answer(vars(found), summary(found), as_json)
 
 
-def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
+def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> typer.Exit:
     from ..studies.fit import fit
     from ..studies.pages import write_sweep_page
     from ..studies.sweep.points import settings
-    from .sweep import progress
 
     targets = settings(target, "--target", "plate_force_max='12 N'")
-    with progress() as report:
+    with bar(case.stem, "points") as report:
         found = fit(case, targets, settings(free, "--free", "contact.friction=0.1..0.9"), report=report, **options)
     said = [f"{key} = {value}" for key, value in found.values.items()]
     for name, value in found.numbers.items():
@@ -90,11 +88,8 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
         )
     counts = f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}"
     page = write_sweep_page(found.sweep, [*said, counts])
-    if as_json:
-        known = {name: value for name, value in vars(found).items() if name != "sweep"}
-        print(json.dumps(known | {"case": str(found.case)}, indent=1))
-    else:
-        print("\n".join([*said, f"{counts}; see {page}"]))
+    known = {name: value for name, value in vars(found).items() if name != "sweep"}
+    return answer(known, [*said, f"{counts}; see {page}"], as_json)
 
 
 def _from_measurement(

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The commands `epdem export ENGINE`: sources of the contact models for engines that users build themselves."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +8,7 @@ import typer
 
 from ..base.files import write_project
 from ..errors import CaseError
-from .options import AsJson
+from .options import AsJson, answer
 
 app = typer.Typer(no_args_is_help=True, help="Write the contact models as sources for an engine that you build.")
 
@@ -32,8 +31,7 @@ def liggghts(
         raise CaseError("epdem export liggghts: name a folder by --out or --check")
     written = [str(f) for f in sources.write(out)] if out else []
     lacks = sources.check(check) if check else []
-    print(json.dumps({"files": written, "lacks": lacks}) if as_json else "\n".join(written + lacks))
-    raise typer.Exit(1 if lacks else 0)
+    raise answer({"files": written, "lacks": lacks}, written + lacks, as_json, not lacks)
 
 
 @app.command()
@@ -60,4 +58,4 @@ def lammps(
 
 def _write(out: Path, sources: dict[Path, Path], commands: list[str], *, as_json: bool) -> None:
     written = [str(f) for f in write_project(out, sources)]
-    print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *commands]))
+    raise answer({"files": written}, [*written, "", *commands], as_json)

@@ -3,7 +3,6 @@
 
 import errno
 import io
-import json
 import os
 import re
 import shutil
@@ -17,14 +16,14 @@ import typer
 
 from ..base import __version__, processes
 from ..base.paths import DEFAULT_ENGINE
-from ..base.terminal import bar, console, status
+from ..base.terminal import status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
 from . import predict as cli_predict
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from .export import app as export
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, print_files, refuse_options, warn
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, answer, formats, refuse_options, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS, YADE and LAMMPS, checked against theory.
 
@@ -92,41 +91,33 @@ def run(
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
-        code = cli_scene.run_scene(
+        raise cli_scene.run_scene(
             case, engine=engines[0], formats=kinds, csv=table, as_json=as_json, resume=resume, **options
         )
-        raise typer.Exit(code)
     if table:
         raise CaseError("--format csv: it is for the contacts of scenes; impacts have results.csv; leave it out")
     refuse_options(
         case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume
     )
     options |= {"steps": steps, "laws": law or []}
-    raise typer.Exit(_run_impacts(case, engines=engines, formats=kinds, full=full, as_json=as_json, **options))
+    raise _run_impacts(case, engines=engines, formats=kinds, full=full, as_json=as_json, **options)
 
 
 def _run_impacts(
     case: Path, *, engines: list[str], formats: tuple[str, ...], full: bool, as_json: bool, **options: Any
-) -> int:
-    """Run a case with a progress bar; draw its figure, write its page, print its table. Exit code: 0, or 1."""
+) -> typer.Exit:
+    """Run a case, draw its figure, write its page, print its table."""
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run
     from ..studies.pages import write_impacts_page
 
-    stages = len(set(engines)) * max(len(set(options["laws"])), 1) + 1  # and the figure
-    with bar() as progress:
-        task = progress.add_task("", total=stages)
-        options["progress"] = lambda text: progress.update(task, advance=1, description=text)
-        outcome = run(case, engines=[find(name) for name in engines], **options)
-        progress.update(task, advance=1, description="figure")
+    with status() as progress:
+        outcome = run(case, engines=[find(name) for name in engines], progress=progress, **options)
+        progress("figure")
         report.figure(outcome, formats)
         write_impacts_page(outcome)
-    if as_json:
-        print(report.run_json(outcome))
-    else:
-        report.show(outcome, console(), full=full)
-    return 0 if outcome.passed else 1
+    return answer(report.document(outcome), report.shown(outcome, full=full), as_json, outcome.passed)
 
 
 @app.command()
@@ -169,8 +160,7 @@ def deck(
         from ..engines.liggghts.deck_checks import check_file
 
         found = check_file(file)
-        print(json.dumps({"warnings": found}) if as_json else "\n".join(found or [f"{file}: nothing found"]))
-        raise typer.Exit(1 if found else 0)
+        raise answer({"warnings": found}, found or [f"{file}: nothing found"], as_json, not found)
     if out is None:
         raise CaseError(f"{file}: --out is missing; name a folder for the deck")
     if convert:
@@ -186,8 +176,7 @@ def deck(
         values = values_of(given or [], example="yieldPressure=1e8")
         files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
         print("\n".join([*notes, *check_file(files[0])]), file=sys.stderr)
-        print_files(files, as_json)
-        return
+        raise answer({"files": files}, map(str, files), as_json)
     if file.suffix == ".j2":
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
@@ -197,8 +186,8 @@ def deck(
         from ..engines.liggghts.own_decks import settings
         from ..engines.liggghts.own_decks import write as fill
 
-        print_files(fill(file, case, settings(given or []), out, force=force), as_json)
-        return
+        files = fill(file, case, settings(given or []), out, force=force)
+        raise answer({"files": files}, map(str, files), as_json)
     refuse_options(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
         refuse_options(file, "a scene has its own law", law=law)
@@ -209,7 +198,7 @@ def deck(
 
     with with_reasons() if reasons else nullcontext():
         files = write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn)
-    print_files(files, as_json)
+    raise answer({"files": files}, map(str, files), as_json)
 
 
 @app.command()
@@ -229,19 +218,19 @@ def cite(
     found = cited(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
     if bibtex:
         print(found.bibtex(), end="")
-    else:
-        print(json.dumps(found) if as_json else "\n".join(f"{what}: {text}" for what, text in found.items()))
+        return
+    raise answer(found, [f"{what}: {text}" for what, text in found.items()], as_json)
 
 
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
     """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
-    from ..engines.doctor import examine, show
+    from ..engines.doctor import examine, shown
 
     with status() as line:
         line("engines")
         findings = examine()
-    show(findings, as_json, console())
+    answer([vars(f) for f in findings], shown(findings), as_json)
     raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
 
 

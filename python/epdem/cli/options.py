@@ -5,10 +5,12 @@ import json
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from rich.table import Table
 
+from ..base.terminal import Shown, console, show_table
 from ..errors import CaseError
 
 FORMATS = ("png", "svg", "pdf")  # of figures
@@ -38,11 +40,6 @@ Formats = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 
 
-def laws_or_own(names: list[str] | None) -> list[str] | list[None]:
-    """The laws named by --law, each once; None, the case's own, without any."""
-    return list(dict.fromkeys(names)) if names else [None]
-
-
 def formats(chosen: list[str] | None) -> tuple[str, ...]:
     """The formats of figures, each once; png without any. Raises CaseError."""
     for name in chosen or []:
@@ -58,10 +55,25 @@ def refuse_options(place: object, reason: str, **given: object) -> None:
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")
 
 
-def print_files(paths: Iterable[Path], as_json: bool) -> None:
-    """Print the files that a command has written."""
-    names = list(map(str, paths))
-    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+def answer(document: object, shown: Iterable[Shown], as_json: bool, passed: bool = True) -> typer.Exit:
+    """Print a JSON document, or tables and lines; the exit code is 1 for what has not passed."""
+    if as_json:
+        print(json.dumps(document, indent=1, default=_value))
+        return typer.Exit(0 if passed else 1)
+    screen = console()
+    for part in shown:
+        if isinstance(part, Table):
+            show_table(screen, part)
+        else:
+            screen.print(part, soft_wrap=True)
+    return typer.Exit(0 if passed else 1)
+
+
+def _value(value: Any) -> Any:
+    """A table of a JSON document as a list of rows, a path as text."""
+    from ..impacts.report import records
+
+    return str(value) if isinstance(value, Path) else records(value)
 
 
 def warn(sentence: str) -> None:

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem predict`: prediction of a case, its time step, or one impact for every law."""
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..base.terminal import console, status
-from .options import AsJson, Laws, laws_or_own, refuse_options
+from ..base.terminal import status
+from .options import AsJson, Laws, answer, refuse_options
 
 if TYPE_CHECKING:  # slow to import
     from ..impacts.experiment import Experiment
@@ -39,62 +38,46 @@ def predict(
 
     With --error print the time step for a target error. Without a case print one impact on a wall for every law.
     """
-    if case is None:
-        refuse_options("epdem predict", "it belongs to a case", law=law, error=error)
-        from ..impacts.experiment import one_impact
-
-        _show(one_impact(material or "steel", radius or "10 mm", speed or "5 m/s", adhesion), [], as_json)
-        return
-    own = "the case has its own numbers"
-    refuse_options(case, own, material=material, radius=radius, speed=speed, work_of_adhesion=adhesion)
-    if error is None:
-        _case(case, law, as_json)
-    else:
-        _time_step(case, law, error, as_json)
-
-
-def _case(case: Path, law: list[str] | None, as_json: bool) -> None:
     from ..case.impact import load
     from ..case.plausibility import case_warnings
     from ..case.toml import error_context
-    from ..impacts.experiment import experiment
-
-    with error_context(case):
-        read = load(case)
-        experiments = [experiment(read, name) for name in laws_or_own(law)]
-    _show(experiments, case_warnings(read), as_json)
-
-
-def _show(experiments: "list[Experiment]", warnings: list[str], as_json: bool) -> None:
+    from ..impacts.experiment import experiment, one_impact
     from ..impacts.prediction import predict as predict_experiment
     from ..impacts.report import predictions
 
-    predictions([(x, predict_experiment(x)) for x in experiments], warnings, as_json, console())
+    warnings: list[str] = []
+    if case is None:
+        refuse_options("epdem predict", "it belongs to a case", law=law, error=error)
+        experiments = one_impact(material or "steel", radius or "10 mm", speed or "5 m/s", adhesion)
+    else:
+        own = "the case has its own numbers"
+        refuse_options(case, own, material=material, radius=radius, speed=speed, work_of_adhesion=adhesion)
+        with error_context(case):
+            read, laws = load(case), dict.fromkeys(law or [])
+            experiments = [experiment(read, name) for name in laws] or [experiment(read)]
+        warnings = case_warnings(read)
+    if error is not None:
+        with error_context(case):
+            raise _time_steps(experiments, error, as_json)
+    raise answer(*predictions([(x, predict_experiment(x)) for x in experiments], warnings), as_json)
 
 
-def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -> None:
-    """The time step of a case for a target error, found with the embedded engine."""
-    from ..case.impact import load
-    from ..case.toml import error_context
-    from ..impacts.experiment import experiment
+def _time_steps(experiments: "list[Experiment]", error: float, as_json: bool) -> typer.Exit:
+    """Print the time steps for a target error, found with the embedded engine."""
     from ..impacts.plan import search
     from ..impacts.prediction import predict as predict_experiment
 
-    searches = []
-    with status() as progress, error_context(case):
-        for name in laws_or_own(law):
-            x = experiment(load(case), name)
+    documents, lines = [], []
+    with status() as progress:
+        for x in experiments:
             progress(f"{x.name}, {x.law.name}")
-            searches.append((x, search(x, predict_experiment(x), error)))
-    if as_json:
-        documents = [{"case": x.name, "law": x.law.name, **asdict(f), "share": f.shares()} for x, f in searches]
-        print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
-        return
-    for x, f in searches:
-        share = f.shares()
-        print(
-            f"{x.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
-            f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
-            f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
-            f"{share['hertz']:.2%} of the elastic contact time"
-        )
+            f = search(x, predict_experiment(x), error)
+            share = f.shares()
+            documents.append({"case": x.name, "law": x.law.name, **asdict(f), "share": share})
+            lines.append(
+                f"{x.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
+                f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
+                f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
+                f"{share['hertz']:.2%} of the elastic contact time"
+            )
+    return answer(documents[0] if len(documents) == 1 else documents, lines, as_json)

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Commands for bulk scenes: functions of a few lines that call the library."""
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from ..base.terminal import bar, console
+from ..base.terminal import bar, status, warned
 from ..errors import CaseError
-from .options import AsJson, CasePath, Replace
+from .options import AsJson, CasePath, Replace, answer
 
 
 def is_scene(path: Path) -> bool:
@@ -21,10 +20,10 @@ def is_scene(path: Path) -> bool:
     return holds_scene(read_toml(path))
 
 
-def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], csv: bool, as_json: bool, **options: Any) -> int:
-    """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
-    from rich.progress import TextColumn, TimeRemainingColumn
-
+def run_scene(
+    case: Path, *, engine: str, formats: tuple[str, ...], csv: bool, as_json: bool, **options: Any
+) -> typer.Exit:
+    """Run a scene with a progress bar; print its checks."""
     from ..base.tables import write_csv
     from ..case.scene import load
     from ..engines import scene_engine
@@ -36,19 +35,13 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], csv: bool, a
     tool = scene_engine(engine)
     if csv and not plan(load(case)).contacts:
         raise CaseError(f"{case}: --format csv: the scene has no table of contacts; give output.contacts")
-    with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
-        task = progress.add_task(Path(case).stem, total=None)
-        options["report"] = lambda step, steps: progress.update(task, completed=step, total=steps)
-        outcome = run(case, tool, **options)
+    with bar(case.stem, "steps") as progress:
+        outcome = run(case, tool, report=progress, **options)
     report.figures(outcome, formats)
     if csv:
         write_csv(outcome.folder / "contacts.csv", outcome.results.contacts)
     write_scene_page(outcome)
-    if as_json:
-        print(report.as_json(outcome))
-    else:
-        report.show(outcome, console())
-    return 0 if outcome.passed else 1
+    return answer(report.document(outcome), report.shown(outcome), as_json, outcome.passed)
 
 
 def view(
@@ -59,7 +52,6 @@ def view(
 ) -> None:
     """Draw a scene before it runs: walls, regions, first spheres."""
     from ..base.files import refuse_existing
-    from ..base.terminal import status
     from ..case.scene import load
     from ..case.toml import error_context
     from ..scenes import pictures
@@ -73,7 +65,7 @@ def view(
             line(f"{p.case.name}: walls, regions, first spheres")
             drawn = pictures.before(p, path)
     said = {"file": str(path), "spheres": p.count, "drawn": drawn}
-    print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.count} spheres")
+    raise answer(said, [f"{path}: walls, regions and {drawn} of {p.count} spheres"], as_json)
 
 
 def soften(
@@ -95,16 +87,11 @@ def soften(
     twin = twin_of(case, factor, folder=target.parent)
     refuse_existing(target, force=force)
     write_text(target, twin.text)
-    if as_json:
-        about = {name: value for name, value in asdict(twin).items() if name != "text"}
-        print(json.dumps({"file": str(target)} | about, indent=1))
-        return
-    for c in twin.changes:
-        print(f"{c.place}: {c.before} -> {c.after}")
+    about = {name: value for name, value in asdict(twin).items() if name != "text"}
     kept = f"changes by up to {100 * twin.e_n_change:.2g} %" if twin.e_n_change else "of every speed stays"
-    print(
+    said = (
         f"time step {twin.time_step_factor:.3g} times larger; w a_max/R* {twin.strain[0]:.3f} -> "
         f"{twin.strain[1]:.3f}; e_n {kept}; written to {target}"
     )
-    for warning in twin.warnings:
-        print(f"warning: {warning}")
+    changes = [f"{c.place}: {c.before} -> {c.after}" for c in twin.changes]
+    raise answer({"file": str(target)} | about, [*changes, said, *warned(twin.warnings)], as_json)

@@ -1,24 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The commands `epdem sweep` and `epdem status`."""
 
-import contextlib
-import json
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.text import Text
 
-from ..base.terminal import bar, console, show_table, table
+from ..base.terminal import Shown, bar, frame_table, warned
 from ..errors import CaseError
-from .options import AsJson, CasePath, Engines, Force, Laws, Out, refuse_options
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, answer, refuse_options
 
 if TYPE_CHECKING:  # slow to import
-    from rich.console import Console
-
-    from ..studies.sweep.folder import Sweep
-    from ..studies.sweep.run import Report, SweepOutcome
+    from ..studies.sweep.run import SweepOutcome
 
 SHOWN = 20  # failed points
 
@@ -54,6 +49,7 @@ def sweep(
     from ..studies.sweep.run import check_points, plan
     from ..studies.sweep.run import run as run_points
     from ..studies.sweep.slurm import parameters, run_jobs
+    from ..studies.sweep.table import points_of
 
     if seed is not None and latin_hypercube is None:
         raise CaseError("--seed goes with --latin-hypercube; leave it out")
@@ -70,12 +66,13 @@ def sweep(
     if dry_run:
         refuse_options(case, "nothing runs", slurm=slurm, retry_failed=retry_failed, force=force)
         check_points(planned, range(1, len(planned.points) + 1), jobs, plans=True)
-        _show_points(planned, as_json, console())
-        return
+        title = f"{planned.name}: {len(planned.points)} points on {', '.join(planned.engines)}"
+        document = {"case": planned.name, "points": planned.points}
+        raise answer(document, [frame_table(title, points_of(planned))], as_json)
     if slurm:
         refuse_options(case, "give the jobs of a cluster by --slurm array_parallelism=N", jobs=jobs)
     by = partial(run_jobs, given=parameters(slurm)) if slurm else None
-    with progress() as report:
+    with bar(planned.name, "points") as report:
         outcome = run_points(
             planned,
             out or planned.default_folder,
@@ -86,8 +83,7 @@ def sweep(
             report=report,
         )
     write_sweep_page(outcome)
-    _show_outcome(outcome, as_json, console())
-    raise typer.Exit(0 if outcome.passed else 1)
+    raise _answer(outcome, as_json)
 
 
 def status(
@@ -104,66 +100,39 @@ def status(
     state = ask(folder)
     if table:
         write(store.read(folder), folder)
-    if as_json:
-        print(json.dumps({name: plain(value) for name, value in state.items()}, indent=1))
-    else:
-        _show_status(state, console())
+    raise answer({name: plain(value) for name, value in state.items()}, _progress(state), as_json)
 
 
-def _show_points(sweep: "Sweep", as_json: bool, screen: "Console") -> None:
-    """Print every point."""
-    if as_json:
-        print(json.dumps({"case": sweep.name, "points": sweep.points}, indent=1))
-        return
-    title = f"{sweep.name}: {len(sweep.points)} points on {', '.join(sweep.engines)}"
-    shown = table(title, ("point", *sweep.points[0]))
-    for n, point in enumerate(sweep.points, start=1):
-        shown.add_row(str(n), *map(str, point.values()))
-    show_table(screen, shown)
+def _failed(failures: list[dict[str, Any]]) -> list[Shown]:
+    """The first failed points, each with its reason."""
+    shown: list[Shown] = [
+        Text(f"point {row['point']} failed: {row['reason']}; {row['folder']}", style="red") for row in failures[:SHOWN]
+    ]
+    left = len(failures) - SHOWN
+    return [*shown, Text(f"... and {left} more", style="red")] if left > 0 else shown
 
 
-@contextlib.contextmanager
-def progress() -> "Iterator[Report]":
-    """A bar with the time left, on a terminal."""
-    from rich.progress import MofNCompleteColumn, TimeRemainingColumn
-
-    with bar(MofNCompleteColumn(), TimeRemainingColumn()) as shown:
-        task = shown.add_task("points", total=None)
-        yield lambda done, total: shown.update(task, completed=done, total=total)
-
-
-def _show_outcome(result: "SweepOutcome", as_json: bool, screen: "Console") -> None:
+def _answer(result: "SweepOutcome", as_json: bool) -> typer.Exit:
     """Print the failed points and a summary."""
     from ..studies.sweep.folder import DONE, FAILED
 
     counts = {state: result.count(state) for state in (DONE, FAILED)}
-    failed = result.table[result.table["status"] == FAILED]
-    if as_json:
-        failures = failed[["point", "folder", "reason"]].to_dict("records")
-        about = {"case": result.sweep.name, "passed": result.passed, "folder": str(result.folder), "ran": result.ran}
-        print(json.dumps(about | counts | {"failures": failures, "warnings": result.warnings}, indent=1))
-        return
-    for row in failed.head(SHOWN).to_dict("records"):
-        screen.print(f"point {row['point']} failed: {row['reason']}", style="red", soft_wrap=True)
-    if len(failed) > SHOWN:
-        screen.print(f"... and {len(failed) - SHOWN} more", style="red")
-    for warning in result.warnings:
-        screen.print(f"warning: {warning}", style="yellow", soft_wrap=True)
+    failures = result.table[result.table["status"] == FAILED][["point", "folder", "reason"]].to_dict("records")
+    about = {"case": result.sweep.name, "passed": result.passed, "folder": str(result.folder), "ran": result.ran}
     outside = result.table[(result.table["status"] == DONE) & ~result.table["passed"]]["point"].nunique()
     text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
     text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
     text += f"; {outside} outside tolerance" if outside else ""
-    screen.print(f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html", soft_wrap=True)
+    summary = f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html"
+    document = about | counts | {"failures": failures, "warnings": result.warnings}
+    return answer(document, [*_failed(failures), *warned(result.warnings), summary], as_json, result.passed)
 
 
-def _show_status(summary: dict[str, Any], screen: "Console") -> None:
-    """Print the status of a sweep."""
-    states = ", ".join(f"{summary[state]} {state}" for state in ("waiting", "running", "done", "failed"))
-    screen.print(f"{summary['case']}: {summary['points']} points: {states}", soft_wrap=True)
-    if summary["done"] + summary["failed"]:
-        left = f"; about {summary['work_left']:.3g} s of work left" if summary["work_left"] else ""
-        screen.print(f"{summary['seconds']:.3g} s of work, longest point {summary['longest']:.3g} s{left}")
-    for row in summary["failures"][:SHOWN]:
-        screen.print(f"point {row['point']} failed: {row['reason']}; {row['folder']}", soft_wrap=True)
-    if len(summary["failures"]) > SHOWN:
-        screen.print(f"... and {len(summary['failures']) - SHOWN} more")
+def _progress(state: dict[str, Any]) -> list[Shown]:
+    """How far a sweep is."""
+    states = ", ".join(f"{state[name]} {name}" for name in ("waiting", "running", "done", "failed"))
+    shown = [f"{state['case']}: {state['points']} points: {states}"]
+    if state["done"] + state["failed"]:
+        left = f"; about {state['work_left']:.3g} s of work left" if state["work_left"] else ""
+        shown.append(f"{state['seconds']:.3g} s of work, longest point {state['longest']:.3g} s{left}")
+    return [*shown, *_failed(state["failures"])]

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`epdem doctor`: which engines are installed, which models LIGGGHTS has, and what to install."""
 
-import json
 import shutil
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
-from rich.console import Console
 from rich.text import Text
 
 from ..base import paths
 from ..base.declarations import declarations, library_path
 from ..base.processes import captured_output
+from ..base.terminal import Shown
 from ..errors import EngineError, EpdemError
 from ..jobs.engine import Feature
 from ..laws import library as claw
@@ -73,13 +72,11 @@ def examine() -> list[Finding]:
     return [*findings, _models(), _mpi()]
 
 
-def show(findings: list[Finding], as_json: bool, console: Console) -> None:
-    """Print the findings."""
-    if as_json:
-        print(json.dumps([asdict(f) for f in findings], indent=1))
-        return
+def shown(findings: list[Finding]) -> list[Shown]:
+    """The findings as lines."""
+    lines: list[Shown] = []
     for f in findings:
         state, colour = ("ok", "green") if f.ok else ("missing", "red") if f.needed else ("absent", "yellow")
-        console.print(Text.assemble((state, colour), f" {f.part}: {f.detail}"), soft_wrap=True)
-        if f.advice:
-            console.print(f"   -> {f.advice}", soft_wrap=True)
+        lines.append(Text.assemble((state, colour), f" {f.part}: {f.detail}"))
+        lines += [f"   -> {f.advice}"] if f.advice else []
+    return lines

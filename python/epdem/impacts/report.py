@@ -2,7 +2,6 @@
 """Tables, JSON and the figure of a run."""
 
 import hashlib
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,49 +10,48 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from rich.console import Console
 from rich.table import Table
 
 from ..base.files import claim
-from ..base.terminal import make_table, show_table, table
+from ..base.terminal import Shown, frame_table, heads, warned
 from ..theory.yielding import FIRST_YIELD_ROUNDED
 from .comparison import CHECKED
 from .experiment import Experiment
 from .prediction import Prediction, predict
 from .run import Outcome
 
-# heads of the table of a run, and the text of each cell
-NORMAL = [
-    ("v [m/s]", "{speed:.4g}"),
-    ("engine", "{engine}"),
-    ("law", "{law}"),
-    ("e_n", "{e_n:.6f}"),
-    ("theory", "{e_n_theory:.6f}"),
-    ("error", "{e_n_error:.1e}"),
-    ("t_c [us]", "{t_c:.4g}"),
-    ("F_max [N]", "{force_max:.5g}"),
-    ("overlap [um]", "{overlap:.4g}"),
-    ("steps", "{steps_in_contact}"),
-    ("pass", "{ok}"),
-]
-OBLIQUE = [
-    ("v_n [m/s]", "{speed:.4g}"),
-    ("angle", "{degrees:.4g}"),
-    ("spin [rad/s]", "{spin_before:.4g}"),
-    ("engine", "{engine}"),
-    ("e_n", "{e_n:.4f}"),
-    ("e_t", "{e_t:.4f}"),
-    ("theory", "{e_t_theory:.4f}"),
-    ("psi_1", "{psi_1:.3f}"),
-    ("psi_2", "{psi_2:.4f}"),
-    ("theory", "{psi_2_theory:.4f}"),
-    ("error", "{psi_2_error:.1e}"),
-    ("f/mu", "{ratio:.4f}"),
-    ("regime", "{regime}"),
-    ("rebound", "{rebound:.2f}"),
-    ("spin", "{spin:.4g}"),
-    ("pass", "{ok}"),
-]
+# heads of the table of a run, by column
+NORMAL = {
+    "speed": "v [m/s]",
+    "engine": "engine",
+    "law": "law",
+    "e_n": "e_n",
+    "e_n_theory": "theory",
+    "e_n_error": "error",
+    "t_c": "t_c [us]",
+    "force_max": "F_max [N]",
+    "overlap": "overlap [um]",
+    "steps_in_contact": "steps",
+    "passed": "pass",
+}
+OBLIQUE = {
+    "speed": "v_n [m/s]",
+    "degrees": "angle",
+    "spin_before": "spin [rad/s]",
+    "engine": "engine",
+    "e_n": "e_n",
+    "e_t": "e_t",
+    "e_t_theory": "theory",
+    "psi_1": "psi_1",
+    "psi_2": "psi_2",
+    "psi_2_theory": "theory",
+    "psi_2_error": "error",
+    "ratio": "f/mu",
+    "regime": "regime",
+    "rebound": "rebound",
+    "spin": "spin",
+    "passed": "pass",
+}
 FEW = 10  # impacts of each engine and law in the short table
 
 
@@ -68,19 +66,16 @@ def records(rows: pd.DataFrame) -> list[dict[str, object]]:
     return [{str(k): plain(value) for k, value in row.items()} for row in rows.to_dict("records")]
 
 
-def run_json(outcome: Outcome) -> str:
-    """The document of `epdem run --json`."""
-    return json.dumps(
-        {
-            "case": outcome.case.name,
-            "passed": outcome.passed,
-            "seconds": outcome.seconds,
-            "yields": {law: list(p.yields) for law, p in outcome.predictions.items()},
-            "warnings": outcome.warnings,
-            "rows": records(outcome.results.comparison),
-        },
-        indent=1,
-    )
+def document(outcome: Outcome) -> dict[str, object]:
+    """What `epdem run --json` prints."""
+    return {
+        "case": outcome.case.name,
+        "passed": outcome.passed,
+        "seconds": outcome.seconds,
+        "yields": {law: list(p.yields) for law, p in outcome.predictions.items()},
+        "warnings": outcome.warnings,
+        "rows": records(outcome.results.comparison),
+    }
 
 
 def yielding(prediction: Prediction) -> str:
@@ -102,17 +97,15 @@ def select_rows(outcome: Outcome, full: bool) -> pd.DataFrame:
 def run_table(outcome: Outcome, *, full: bool = False) -> Table:
     """One row per speed and engine, and per angle and spin of oblique impacts; FEW of them unless `full`."""
     rows = select_rows(outcome, full)
-    rows = rows.assign(ok=np.where(rows["passed"], "yes", "NO"))
     title, order = outcome.case.case.title, ["law", "speed", "engine"]
     if outcome.case.impact.oblique:
         columns, order = OBLIQUE, ["law", "speed", "angle", "spin_before", "engine"]
         rows = _with_regimes(outcome, rows)
     else:
-        columns = [column for column in NORMAL if column[0] != "law" or rows["law"].nunique() > 1]
+        columns = {name: head for name, head in NORMAL.items() if name != "law" or rows["law"].nunique() > 1}
         title += f" ({'; '.join(f'{law}: {yielding(p)}' for law, p in outcome.predictions.items())})"
         rows = rows.assign(t_c=1e6 * rows["contact_time"], overlap=1e6 * rows["overlap_max"])
-    ordered = rows.sort_values(order, kind="stable").to_dict("records")
-    return make_table(title, columns, ordered, left=("engine", "law", "regime"))
+    return frame_table(title, rows.sort_values(order, kind="stable"), columns)
 
 
 def _with_regimes(outcome: Outcome, rows: pd.DataFrame) -> pd.DataFrame:
@@ -170,17 +163,12 @@ def against_measured(outcome: Outcome) -> list[str]:
     return lines
 
 
-def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
-    """Print table, warnings and summary."""
-    shown, rows = select_rows(outcome, full), outcome.results.comparison
-    show_table(console, run_table(outcome, full=full))
-    if len(shown) < len(rows):
-        console.print(f"{len(shown)} of {len(rows)} rows; --full prints all")
-    for line in [*largest_errors(outcome), *against_measured(outcome)]:
-        console.print(line, soft_wrap=True)
-    for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow")
-    console.print(summary(outcome), soft_wrap=True)
+def shown(outcome: Outcome, *, full: bool = False) -> list[Shown]:
+    """Table, errors, warnings and summary."""
+    few, all_rows = len(select_rows(outcome, full)), len(outcome.results.comparison)
+    cut = [f"{few} of {all_rows} rows; --full prints all"] if few < all_rows else []
+    lines = [*cut, *largest_errors(outcome), *against_measured(outcome)]
+    return [run_table(outcome, full=full), *lines, *warned(outcome.warnings), summary(outcome)]
 
 
 def mark(outcome: Outcome, *facts: object) -> str:
@@ -206,38 +194,28 @@ def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
         return save(main_chart(outcome), outcome.folder, formats, comment=f"inputs {digest}")[0]
 
 
-def predictions(
-    pairs: list[tuple[Experiment, Prediction]], warnings: list[str], as_json: bool, console: Console
-) -> None:
-    """Print predictions of one case by several laws, with the warnings about the case."""
-    if as_json:
-        document = [
-            {
-                "case": x.name,
-                "law": x.law.name,
-                "parameters": x.law.parameters,
-                "yields": p.yields,
-                "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
-                "warnings": [*warnings, *p.warnings],
-                "rows": records(p.table()),
-            }
-            for x, p in pairs
-        ]
-        print(json.dumps(document[0] if len(document) == 1 else document, indent=1))
-        return
+def predictions(pairs: list[tuple[Experiment, Prediction]], warnings: list[str]) -> tuple[object, list[Shown]]:
+    """Predictions of one case by several laws, with the warnings about the case: document, and table with lines."""
+    documents = [
+        {
+            "case": x.name,
+            "law": x.law.name,
+            "parameters": x.law.parameters,
+            "yields": p.yields,
+            "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
+            "warnings": [*warnings, *p.warnings],
+            "rows": records(p.table()),
+        }
+        for x, p in pairs
+    ]
     frame = pd.concat([p.table().assign(law=x.law.name) for x, p in pairs])
-    columns = ["law", *frame.columns.drop("law")]
-    shown = table(f"{pairs[0][0].title} (SI units)", columns, left=("law",))
-    for row in frame[columns].itertuples(index=False):
-        shown.add_row(*(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row))
-    show_table(console, shown)
+    columns = heads(["law", *frame.columns.drop("law")], {})
+    shown: list[Shown] = [frame_table(f"{pairs[0][0].title} (SI units)", frame, columns)]
     for x, p in pairs:
-        console.print(f"{x.law.name}: {yielding(p)}")
+        shown.append(f"{x.law.name}: {yielding(p)}")
         for material, speed in p.yield_speeds.items():
             never = "never: the softer body limits the pressure"
             when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
-            console.print(f"{x.law.name}: {material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
-        for warning in p.warnings:
-            console.print(f"warning: {x.law.name}: {warning}", style="yellow")
-    for warning in warnings:
-        console.print(f"warning: {warning}", style="yellow")
+            shown.append(f"{x.law.name}: {material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
+        shown += warned(f"{x.law.name}: {warning}" for warning in p.warnings)
+    return documents[0] if len(documents) == 1 else documents, [*shown, *warned(warnings)]

@@ -5,13 +5,13 @@ A study hands over its parts: words, facts, charts, tables, listings, pictures. 
 """
 
 import base64
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from ..base.files import write_text
+from ..base.terminal import cell, heads
 from .chart import Chart, svg
 
 if TYPE_CHECKING:  # slow to import
@@ -43,11 +43,11 @@ class Rows:
 
     def heads(self) -> list[str]:
         """The headings: names with their units."""
-        return [f"{name} [{self.units[name]}]" if self.units.get(name) else name for name in map(str, self.frame)]
+        return [*heads(self.frame, self.units).values()]
 
     def cells(self) -> list[list[str]]:
         """The texts of the first `row_limit` rows."""
-        return [[*map(_cell, row)] for row in self.frame.head(self.row_limit).itertuples(index=False)]
+        return [[*map(cell, row)] for row in self.frame.head(self.row_limit).itertuples(index=False)]
 
     @property
     def row_limit(self) -> int:
@@ -101,14 +101,6 @@ class Page:
     passed: bool | None = None
     command: str = ""
     warnings: Sequence[str] = ()
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, bool) or type(value).__name__ == "bool":  # numpy's, too
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return "–" if math.isnan(value) else f"{value:.5g}"
-    return str(value)
 
 
 def render(page: Page, mark: str = "") -> str:

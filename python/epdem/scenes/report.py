@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The output of a scene: its charts as data, the picture of its bed, checks, summary, JSON."""
 
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from rich.console import Console
 
 from ..base.files import claim
-from ..base.terminal import make_table, show_table, table
+from ..base.terminal import Shown, frame_table, heads, warned
 from ..case.outputs import MassFlow, ReboundSpeed, Unloading
 from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
@@ -39,8 +37,7 @@ COLOURS = {
 }
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
-CHECKED = [("check", "{check}"), ("value", "{value:.5g}"), ("expected", "{expected:.5g}"), ("unit", "{unit}")]
-CHECKED += [("error", "{error:.1e}"), ("tolerance", "{tolerance:.1e}"), ("pass", "{ok}")]
+CHECKED = {name: name for name in ("check", "value", "expected", "unit", "error", "tolerance")} | {"passed": "pass"}
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
@@ -335,88 +332,65 @@ def key(p: ScenePlan, tables: Tables) -> list[Chart]:
     return [Chart("key", p.case.case.title, f"{said}.", found, heading=f"Key figure: {said}")] if found else []
 
 
-def as_json(outcome: SceneOutcome) -> str:
-    """The document of `epdem run --json` for a scene: of the measures the last frame, or row of a force or torque."""
+def document(outcome: SceneOutcome) -> dict[str, object]:
+    """What `epdem run --json` prints of a scene: of the measures the last frame, or row of a force or torque."""
     tables, measured = outcome.results.tables, list[dict[str, object]]()
     if outcome.plan.scene.measure:
         row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))
         loads = [m for m in outcome.plan.scene.measure if isinstance(m, Load)]
         measured = [row[0] | {m.name: float(curve(m, tables)[1][-1]) for m in loads}]
-    return json.dumps(
-        {
-            "case": outcome.case.name,
-            "kind": outcome.case.kind,
-            "passed": outcome.passed,
-            "steps": outcome.plan.steps,
-            "time_step": outcome.plan.time_step,
-            "seconds": outcome.seconds,
-            "reused": outcome.reused,
-            "resumed_from": outcome.resumed_from,
-            "warnings": outcome.warnings,
-            "checks": records(tables["checks"]),
-            "measures": measured,
-            "stages": records(tables["stages"]) if "stages" in tables else [],
-            "last_row": records(tables["rows"].tail(1))[0],
-            "units": units(tables["rows"]),
-        },
-        indent=1,
-    )
+    return {
+        "case": outcome.case.name,
+        "kind": outcome.case.kind,
+        "passed": outcome.passed,
+        "steps": outcome.plan.steps,
+        "time_step": outcome.plan.time_step,
+        "seconds": outcome.seconds,
+        "reused": outcome.reused,
+        "resumed_from": outcome.resumed_from,
+        "warnings": outcome.warnings,
+        "checks": records(tables["checks"]),
+        "measures": measured,
+        "stages": records(tables["stages"]) if "stages" in tables else [],
+        "last_row": records(tables["rows"].tail(1))[0],
+        "units": units(tables["rows"]),
+    }
 
 
-def show(outcome: SceneOutcome, console: Console) -> None:
-    """Print checks and a summary line."""
-    checks = outcome.results.tables["checks"]
-    rows = checks.assign(ok=np.where(checks["passed"], "yes", "NO")).to_dict("records")
-    show_table(console, make_table(outcome.case.case.title, CHECKED, rows, left=("check", "unit")))
-    _show_measures(outcome, console)
-    _show_stages(outcome, console)
-    for line in stages.against_measured(outcome.plan, outcome.results.tables):
-        console.print(line, soft_wrap=True)
-    for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow")
-    p, rows = outcome.plan, outcome.results.tables["rows"]
+def shown(outcome: SceneOutcome) -> list[Shown]:
+    """Checks, measures, stages, warnings and a summary line."""
+    p, tables = outcome.plan, outcome.results.tables
+    found: list[Shown] = [frame_table(outcome.case.case.title, tables["checks"], CHECKED)]
+    if p.scene.measure:
+        found.append(frame_table("measures", _measured(p, tables)))
+    if "stages" in tables:
+        names = [name for name in tables["stages"] if name not in ("step", "time", "porosity")]
+        found.append(frame_table("stages", tables["stages"], heads(names, units(tables["stages"]))))
     came = " (from results.h5)" if outcome.reused else ""
     if outcome.resumed_from is not None:
         came = f" (continued from step {outcome.resumed_from})"
-    console.print(
-        f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {p.steps} steps of {p.time_step:g} s, "
-        f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/report.html",
-        soft_wrap=True,
+    summary = (
+        f"{outcome.case.name}: {int(tables['rows']['particles'].iloc[-1])} spheres, {p.steps} steps of "
+        f"{p.time_step:g} s, {outcome.seconds:.1f} s{came}; see {outcome.folder}/report.html"
     )
+    return [*found, *stages.against_measured(p, tables), *warned(outcome.warnings), summary]
 
 
-def _show_stages(outcome: SceneOutcome, console: Console) -> None:
-    if "stages" not in outcome.results.tables:
-        return
-    stages = outcome.results.tables["stages"]
-    names = [name for name in stages if name not in ("phase", "step", "time", "porosity")]
-    known = units(stages)
-    heads = [f"{name} [{known[name]}]" if name in known else name for name in names]
-    shown = table("stages", ["phase", *heads], left=("phase",))
-    for stage in stages.to_dict("records"):
-        cells = ("" if math.isnan(stage[name]) else f"{stage[name]:.4g}" for name in names)
-        shown.add_row(str(stage["phase"]), *cells)
-    show_table(console, shown)
-
-
-def _show_measures(outcome: SceneOutcome, console: Console) -> None:
-    tables = outcome.results.tables
-    if not outcome.plan.scene.measure:
-        return
-    heads = ("measure", "kind", "time [s]", "value", "smallest", "largest", "unit")
-    shown = table("measures", heads, left=("measure", "kind"))
-    for m in outcome.plan.scene.measure:
+def _measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
+    """The last value of each measure, and its limits."""
+    found = []
+    for m in p.scene.measure:
         if isinstance(m, Histogram):
-            values = values_of(outcome.plan, m, tables)
+            values = values_of(p, m, tables)
             kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
             time = tables["measures"]["time"].iloc[-1]
         else:
             times, values = curve(m, tables)
             kind, value, time = m.kind, float(values[-1]), times[-1]
         known = values[np.isfinite(values)]
-        limits = (f"{known.min():.5g}", f"{known.max():.5g}") if known.size else ("nan", "nan")
-        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, MEASURES[m.kind].unit)
-    show_table(console, shown)
+        limits = (known.min(), known.max()) if known.size else (math.nan, math.nan)
+        found.append((m.name, kind, time, value, *limits, MEASURES[m.kind].unit))
+    return pd.DataFrame(found, columns=["measure", "kind", "time [s]", "value", "smallest", "largest", "unit"])
 
 
 def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:

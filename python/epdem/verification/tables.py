@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""DataFrames as tables on the console."""
+"""The tables of a crosscheck on the console."""
 
-import math
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-
-from ..base.terminal import table
+from ..base.terminal import Shown, frame_table
 
 if TYPE_CHECKING:  # slow to import
     import pandas as pd
@@ -20,25 +17,10 @@ the set-up; momentum: lost, as a share of one body's change. A serial YADE sorts
 an embedded contact has neither ids nor restarts; inf: the run died or lost bodies."""
 
 
-def cell(value: object, digits: int = 3) -> str:
-    """A table cell: three digits, a dash for NaN."""
-    if isinstance(value, float):
-        return "-" if math.isnan(value) else f"{value:.{digits}g}"
-    return str(value)
-
-
-def frame_table(title: str, frame: "pd.DataFrame", digits: int = 3) -> Table:
-    """A DataFrame as a table."""
-    shown = table(title, map(str, frame.columns))
-    for row in frame.itertuples(index=False):
-        shown.add_row(*(cell(value, digits) for value in row))
-    return shown
-
-
-def crosscheck_tables(title: str, frame: "pd.DataFrame") -> list[Table | str]:
+def crosscheck_tables(title: str, frame: "pd.DataFrame") -> list[Shown]:
     """The tables of a crosscheck: values and errors, then changes in variants of the set-up, and a note."""
     head = f"{title}: values at {frame['speed'].iloc[0]:.4g} m/s, largest errors over speeds and phases"
-    shown: list[Table | str] = [frame_table(head, frame[[name for name in VALUES if name in frame]], digits=6)]
+    shown: list[Shown] = [frame_table(head, frame[[name for name in VALUES if name in frame]], digits=6)]
     if not (changed := frame.reindex(columns=CHANGES).dropna(subset="momentum")).empty:
         shown.append(frame_table("Two spheres of unequal radii and moduli", changed, digits=2))
     return [*shown, NOTE]

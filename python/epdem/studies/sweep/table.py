@@ -19,6 +19,11 @@ from . import folder as store
 from .folder import Sweep
 
 
+def points_of(sweep: Sweep) -> pd.DataFrame:
+    """The points with what each sets."""
+    return pd.DataFrame([{"point": n, **point} for n, point in enumerate(sweep.points, start=1)])
+
+
 def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
     """A row for every row of every point: its number, folder, keys in SI, state and reason, then its results.
 

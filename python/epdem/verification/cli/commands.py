@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The commands of `epdem verify`: each calls its study and prints the answer."""
 
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
 from rich.text import Text
 
-from ...base.terminal import console, show_table, status
+from ...base.terminal import Shown, frame_table, status
 from ...cli.options import (
     AsJson,
     CasePath,
@@ -19,11 +17,10 @@ from ...cli.options import (
     Formats,
     Laws,
     Out,
+    answer,
     formats,
-    print_files,
 )
 from ...errors import CaseError
-from ..tables import frame_table
 
 if TYPE_CHECKING:  # slow to import
     from ..runner import Outcome
@@ -33,31 +30,10 @@ verify = typer.Typer(
 )
 
 
-def _value(value: Any) -> Any:
-    """A table of a JSON document as a list of rows, a path as text."""
-    from ...impacts.report import records
-
-    return str(value) if isinstance(value, Path) else records(value)
-
-
-def _answer(document: object, shown: Iterable[Table | Text | str], as_json: bool, passed: bool = True) -> typer.Exit:
-    """Print a JSON document, or tables and lines; the exit code is 1 for a study that has not passed."""
-    if as_json:
-        print(json.dumps(document, indent=1, default=_value))
-        return typer.Exit(0 if passed else 1)
-    screen = console()
-    for part in shown:
-        if isinstance(part, Table):
-            show_table(screen, part)
-        else:
-            screen.print(part, soft_wrap=True)
-    return typer.Exit(0 if passed else 1)
-
-
 def _rows(outcome: "Outcome", note: str, as_json: bool) -> typer.Exit:
     """Print the rows of a study of the runner, and a line with its files."""
     document = {"passed": outcome.passed, "folder": outcome.folder, "rows": outcome.rows}
-    return _answer(document, [frame_table(outcome.study.title, outcome.rows), note], as_json, outcome.passed)
+    return answer(document, [frame_table(outcome.study.title, outcome.rows, digits=3), note], as_json, outcome.passed)
 
 
 def _absent(reasons: Mapping[str, str]) -> list[str]:
@@ -98,7 +74,7 @@ def crosscheck(
             shown += [f"{name} has a law and a theory of its own: {note}" for name, note in c.notes.items()]
             shown += [*_absent(c.absent), f"page, figure and data: {of_crosscheck(c)}"]
             passed &= c.passed
-    raise _answer(documents[0] if len(documents) == 1 else documents, shown, as_json, passed)
+    raise answer(documents[0] if len(documents) == 1 else documents, shown, as_json, passed)
 
 
 @verify.command()
@@ -132,8 +108,8 @@ def cost(
         files = [*cost_report.write(found, folder, kinds), of_cost(found, scene, folder)]
     document = {"case": found.case.name, "seconds": found.seconds, "files": files, "rows": found.rows}
     document |= {"models": found.models} | ({} if scene is None else {"bulk": scene})
-    tables = [frame_table(title, frame) for title, frame in cost_report.tables(found, scene).items()]
-    raise _answer(document, [*tables, f"see {folder}/report.html"], as_json)
+    tables = [frame_table(title, frame, digits=3) for title, frame in cost_report.tables(found, scene).items()]
+    raise answer(document, [*tables, f"see {folder}/report.html"], as_json)
 
 
 @verify.command()
@@ -165,9 +141,9 @@ def stability(
         of_stability(found, folder)
     document = {"passed": found.passed, "rows": found.verdicts, "roundoff": found.roundoff, "bulk": found.bulk}
     failed = found.verdicts[found.verdicts["status"] == "failed"].itertuples()
-    shown: list[Table | Text] = [frame_table(title, frame) for title, frame in tables(found).items()]
+    shown: list[Shown] = [frame_table(title, frame, digits=3) for title, frame in tables(found).items()]
     shown += [Text(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red") for v in failed]
-    raise _answer(document, shown, as_json, found.passed)
+    raise answer(document, shown, as_json, found.passed)
 
 
 @verify.command()
@@ -237,8 +213,8 @@ def data(
         )
         page = of_validation(found)
     document = {"rows": found.points, "summary": found.summary, "absent": found.absent, "page": page}
-    table = frame_table(STUDIES["data"].title, found.summary)
-    raise _answer(document, [table, *_absent(found.absent), f"see {page}"], as_json)
+    table = frame_table(STUDIES["data"].title, found.summary, digits=3)
+    raise answer(document, [table, *_absent(found.absent), f"see {page}"], as_json)
 
 
 @verify.command()
@@ -256,7 +232,7 @@ def figures(
     with claim(out, force=force), status() as progress:
         progress("four figures")
         paths = draw_all(out, kinds)
-    print_files(paths, as_json)
+    raise answer({"files": paths}, map(str, paths), as_json)
 
 
 @verify.command()
@@ -270,7 +246,7 @@ def rerun(
     with status() as progress:
         found = repeat(file, progress)
     document = {"file": file, "same": found.same, "versions": found.versions, "differences": found.differences}
-    shown: list[Text | str] = [
+    shown: list[Shown] = [
         Text(f"{name}: {before} then, {now} now", style="yellow") for name, (before, now) in found.versions.items()
     ]
     shown += [
@@ -278,4 +254,4 @@ def rerun(
         for name, difference in found.differences.items()
     ]
     shown.append(f"{file}: {'everything is the same' if found.same else 'not everything is the same'}")
-    raise _answer(document, shown, as_json, found.same)
+    raise answer(document, shown, as_json, found.same)

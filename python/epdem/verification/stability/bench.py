@@ -54,4 +54,4 @@ class Bench:
             speed = speed + 0.5 * time_step * force / x.m_star
         p = Plan(x, time_step, steps, gap.size, speed, gap)
         found = measure(p, self.run(p))
-        return found.e_n * speed / x.speed[0], found.overlap_max
+        return found["e_n"].to_numpy() * speed / x.speed[0], found["overlap_max"].to_numpy()
