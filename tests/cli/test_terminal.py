@@ -56,9 +56,9 @@ def test_a_terminal_has_progress_and_colour_and_a_narrow_one_cuts_no_number(tmp_
 
 
 def test_a_terminal_has_a_bar_with_what_is_done_of_a_sweep(tmp_path):
-    words = ["sweep", *RUN[1:4], "--set", "impact.speeds=1 m/s,2 m/s", "-j", "1", "-o", "out"]
+    words = ["sweep", *RUN[1:4], "--set", "impact.body.radius=1 mm,2 mm", "-j", "1", "-o", "out"]
     plain = ESCAPE.sub("", shown(words, tmp_path, 120))
-    assert "━━━" in plain and "/2 points" in plain and "2 of 2 points done" in plain
+    assert "━━━" in plain and "2/2 points" in plain and "2 of 2 points done" in plain
 
 
 def test_no_color_and_a_dumb_terminal_are_kept(tmp_path):

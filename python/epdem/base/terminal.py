@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rich.cells import cell_len
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
@@ -95,7 +95,8 @@ def bar(what: str, counted: str) -> Iterator[Callable[[int, int], None]]:
     with Progress(
         TextColumn("{task.description}", markup=False),
         BarColumn(),
-        TextColumn(f"{{task.completed}}/{{task.total}} {counted}"),
+        MofNCompleteColumn(),
+        TextColumn(counted),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
         console=Console(stderr=True),

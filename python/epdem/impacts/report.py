@@ -210,7 +210,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], warnings: list[str])
     ]
     frame = pd.concat([p.table().assign(law=x.law.name) for x, p in pairs])
     columns = heads(["law", *frame.columns.drop("law")], {})
-    shown: list[Shown] = [frame_table(f"{pairs[0][0].title} (SI units)", frame, columns)]
+    shown: list[Shown] = [frame_table(f"{pairs[0][0].title} (SI units)", frame, columns, digits=6)]
     for x, p in pairs:
         shown.append(f"{x.law.name}: {yielding(p)}")
         for material, speed in p.yield_speeds.items():
