@@ -13,8 +13,9 @@ from typing import Any, NotRequired, TypedDict, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..base.declarations import declarations, load_library
+from ..base.declarations import load_library
 from ..errors import CaseError
+from .strengths import find_law
 
 Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
 _D = POINTER(c_double)
@@ -113,9 +114,7 @@ class Law:
     """
 
     def __init__(self, name: str, *, E_star: float, share: float = 1.0, **parameters: float):
-        if name not in declarations():
-            raise CaseError(f"law {name!r} does not exist; there are {', '.join(declarations())}")
-        self.info = declarations()[name]
+        self.info = find_law(name)
         known = [p.name for p in self.info.parameters]
         for key in parameters:
             if key not in known:

@@ -11,7 +11,6 @@ import numpy as np
 from ..case.impact import HIGHEST_E_N, Case, load
 from ..case.law import law_numbers
 from ..case.sizes import csv_table, number_in
-from ..case.toml import error_context
 from ..case.units import read_number
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, at_rate, bodies, pair_of
@@ -111,13 +110,11 @@ class _Uncalibrated:
 
 def _uncalibrated(path: Path) -> _Uncalibrated:
     case = load(path)
-    with error_context(path):
-        parameter = find_law(case.law.name).strength
+    parameter = find_law(case.law.name).strength
     if parameter is None:
         raise CaseError(f"{path}: law {case.law.name} never yields; it has nothing to calibrate")
     given = {k: v for k, v in case.law.parameters().items() if k not in (parameter, f"{parameter}_ratio")}
-    with error_context(path):
-        return _Uncalibrated(case, law_numbers(case.law.name, given), parameter)
+    return _Uncalibrated(case, law_numbers(case.law.name, given), parameter)
 
 
 def _check(path: Path, e_n: float, speed: float) -> None:

@@ -29,7 +29,7 @@ import tomlkit
 from ..case.fields import Material
 from ..case.impact import Rate
 from ..case.law import law_numbers
-from ..case.toml import error_context, portable_text, read_toml, text_of, with_library
+from ..case.toml import portable_text, read_toml, text_of, with_library
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, find_law, yield_ratio_of
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
@@ -139,12 +139,9 @@ def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
     from ..impacts.prediction import predict
     from ..scenes.timestep import leading_impact
 
-    if not scenes.is_scene(data):
-        return predict(experiment(impacts.parse(data, path)))
-    case = scenes.parse(data, path)
-    with error_context(path):
-        find_law(case.law.name)
-    return predict(leading_impact(case))
+    if scenes.is_scene(data):
+        return predict(leading_impact(scenes.parse(data, path)))
+    return predict(experiment(impacts.parse(data, path)))
 
 
 def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
