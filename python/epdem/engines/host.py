@@ -24,7 +24,7 @@ from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
 from . import log
 from .frames import Frames
-from .input_script import data_text
+from .input_script import impact_data
 from .restarts import choose, pruning
 
 LIGGGHTS = "use --engine liggghts"  # the engine of every scene
@@ -61,7 +61,7 @@ class Host(Engine[Any, Any]):
 
     def data(self, deck: Any) -> dict[str, str]:
         """The data files of a deck of impacts by name."""
-        return {"impact.data": data_text(deck.plan, len(deck.types))}
+        return {"impact.data": impact_data(deck.plan, len(deck.types))}
 
     def files(self, job: Plan | ScenePlan) -> dict[str, str]:
         if isinstance(job, ScenePlan):

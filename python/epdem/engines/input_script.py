@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.rendering import number
 from ..errors import CaseError
-from ..impacts.plan import Plan, room, side_by_side
+from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
 from ..scenes.limits import PressedBed
 from ..scenes.model import Model, Type
@@ -22,46 +22,33 @@ SKIN_OF_GROWTH = 0.2  # of the largest radius, with compaction: lists, made anew
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
-@dataclass(frozen=True)
-class Spheres:
-    """Equal spheres: atom type (from 1), diameter [m], density [kg/m^3], places [m] and velocities [m/s], (n, 3).
-
-    `spin` about y [rad/s], shape (n,); None: none.
-    """
-
-    type: int
-    diameter: float
-    density: float
-    place: np.ndarray
-    velocity: np.ndarray
-    spin: np.ndarray | None = None
-
-
-def text(title: str, types: int, box: Iterable[tuple[float, float]], groups: Iterable[Spheres]) -> str:
-    """A data file of `types` atom types in a `box` of three (low, high) [m]; ids from 1 in the order of the groups."""
-    atoms: list[str] = []
-    velocities: list[str] = []
-    for group in groups:
-        body = f"{group.type} {number(group.diameter)} {number(group.density)}"
-        spins = ["0"] * len(group.place) if group.spin is None else [number(w) for w in group.spin.tolist()]
-        for place, velocity, spin in zip(group.place.tolist(), group.velocity.tolist(), spins, strict=True):
-            id = len(atoms) + 1
-            atoms.append(f"{id} {body} {' '.join(map(number, place))}")
-            velocities.append(f"{id} {' '.join(map(number, velocity))} 0 {spin} 0")
-    sides = [f"{number(low)} {number(high)} {a}lo {a}hi" for a, (low, high) in zip("xyz", box, strict=True)]
+def data_text(title: str, types: int, box: Iterable[float], rows: Iterable[Sequence[float]]) -> str:
+    """A data file of `types` atom types in a box xlo xhi ... [m]; ids from 1. rows: type, diameter, density, place,
+    velocity, spin of each sphere, SI."""
+    atoms, velocities = [], []
+    for n, (kind, *values) in enumerate(rows, 1):
+        words = [number(x) for x in values]
+        atoms.append(" ".join([str(n), str(int(kind)), *words[:5]]))
+        velocities.append(" ".join([str(n), *words[5:]]))
+    xlo, xhi, ylo, yhi, zlo, zhi = map(number, box)
     head = [f"{' '.join(title.split())}: id type diameter density x y z", "", f"{len(atoms)} atoms"]
-    head += [f"{types} atom types", *sides, ""]
-    return "\n".join([*head, "Atoms", "", *atoms, "", "Velocities", "", *velocities, ""])
+    head += [f"{types} atom types", f"{xlo} {xhi} xlo xhi", f"{ylo} {yhi} ylo yhi", f"{zlo} {zhi} zlo zhi"]
+    return "\n".join([*head, "", "Atoms", "", *atoms, "", "Velocities", "", *velocities, ""])
 
 
-def data_text(plan: Plan, types: int) -> str:
-    """Positions and velocities of all bodies as a data file; a target that moves is of the last type."""
-    kinds = (1, types)
-    groups = [
-        Spheres(k, 2 * g.body.radius, g.body.density, g.place, g.velocity, g.spin)
-        for k, g in zip(kinds, side_by_side(plan), strict=False)
-    ]
-    return text(plan.experiment.name, types, room(plan), groups)
+def equal_spheres(kind: int, g: Group) -> list[list[float]]:
+    """The bodies of one side of impacts as rows of `data_text`."""
+    still = np.zeros(len(g.place))
+    same = np.tile([kind, 2 * g.body.radius, g.body.density], (len(g.place), 1))
+    spin = (still, still if g.spin is None else g.spin, still)
+    rows: list[list[float]] = np.column_stack([same, g.place, g.velocity, *spin]).tolist()
+    return rows
+
+
+def impact_data(plan: Plan, types: int) -> str:
+    """The data file of all bodies of impacts; a target that moves is of the last type."""
+    sides = zip((1, types), side_by_side(plan), strict=False)
+    return data_text(plan.experiment.name, types, room(plan), [row for side in sides for row in equal_spheres(*side)])
 
 
 def finite(value: float) -> float:

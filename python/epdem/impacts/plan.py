@@ -241,13 +241,13 @@ def approach(plan: Plan, z: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.n
     return (x.body.radius + x.target.radius - (z[:, :n] - z[:, n:])).T, (v[:, n:] - v[:, :n]).T
 
 
-def room(plan: Plan) -> tuple[tuple[float, float], ...]:
-    """(low, high) [m] along x, y and z of a box that holds all bodies to the end: they part no faster than they met."""
+def room(plan: Plan) -> tuple[float, ...]:
+    """xlo xhi ylo yhi zlo zhi [m] of a box that holds all bodies to the end: they part no faster than they met."""
     reach, spacing = _reach(plan), _spacing(plan)
     edge = spacing * math.ceil(math.sqrt(plan.n))
     travel = plan.steps * plan.time_step * float(plan.speed.max()) + 4 * reach
     low = -reach if math.isinf(plan.experiment.target.radius) else -travel
-    return (-spacing, edge), (-spacing, edge), (low, travel)
+    return -spacing, edge, -spacing, edge, low, travel
 
 
 def _spacing(plan: Plan) -> float:

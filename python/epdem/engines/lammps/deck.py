@@ -16,7 +16,7 @@ from ...scenes.columns import columns_of_frames
 from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import StopCondition, default_skin, row_words, stop_condition
+from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition
 from . import words
 from .scene_walls import DeckWall, meshes, motions, plane, plate_place, restart_commands
 
@@ -181,15 +181,8 @@ def _fills(p: ScenePlan, phase: str) -> list[tuple[str, str, str]]:
 def _data(p: ScenePlan, phase: str) -> str:
     rows = [*placement.moving_spheres(p, phase), *placement.later_bodies(p, phase)]
     density = [0.0, *(t.density for t in p.model.types)]
-    atoms, velocities = [], []
-    for n, (x, y, z, radius, kind, *motion, _) in enumerate(rows, 1):
-        numbers = " ".join(map(decks.number, (2 * radius, density[int(kind)], x, y, z)))
-        atoms.append(f"{n} {int(kind)} {numbers}")
-        velocities.append(f"{n} {' '.join(map(decks.number, motion))}")
-    limits = zip("xyz", p.box[::2], p.box[1::2], strict=True)
-    sides = [f"{decks.number(low)} {decks.number(high)} {a}lo {a}hi" for a, low, high in limits]
-    head = [f"spheres of {p.case.name}", "", f"{len(rows)} atoms", f"{len(density) - 1} atom types"]
-    return "\n".join([*head, *sides, "", "Atoms # sphere", "", *atoms, "", "Velocities", "", *velocities, ""])
+    spheres = [(kind, 2 * r, density[int(kind)], x, y, z, *motion) for x, y, z, r, kind, *motion, _ in rows]
+    return data_text(f"spheres of {p.case.name}", len(p.model.types), p.box, spheres)
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -227,6 +227,6 @@ def files(p: ScenePlan) -> dict[str, str]:
         "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=data),
     }
     if p.scene.table:
-        texts["spheres.data"] = decks.render("liggghts/spheres.data.j2", deck=data, rows=table(p))
+        texts["spheres.data"] = table(p)
     formulas = tubes(p)
     return texts | {f"{name}.stl": stl_text(name, x) for name, x in p.triangles.items() if name not in formulas}

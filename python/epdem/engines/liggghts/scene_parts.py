@@ -17,7 +17,7 @@ from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ..input_script import WRITE_RESTART, StopCondition, stop_condition, torque_origin
+from ..input_script import WRITE_RESTART, StopCondition, data_text, stop_condition, torque_origin
 from .primitives import Primitive, primitive, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
@@ -311,14 +311,11 @@ def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
     return next_one is not None and isinstance(one, PressMove) == isinstance(next_one, PressMove)
 
 
-def table(p: ScenePlan) -> list[tuple[str, str]]:
-    """The lines of each sphere of the table: id, type, diameter, density, place; id, velocity, spin."""
-    rows = []
-    for n, s in enumerate(p.scene.table, 1):
-        density = p.case.materials[s.material].density
-        body = f"{n} {p.model.type_of(s.material)} {_words((2 * s.radius, density), s.place)}"
-        rows.append((body, f"{n} {_words(s.velocity, s.spin)}"))
-    return rows
+def table(p: ScenePlan) -> str:
+    """The data file of the spheres of the table."""
+    spheres = ((p.model.type_of(s.material), s) for s in p.scene.table)
+    rows = [(k, 2 * s.radius, p.model.types[k - 1].density, *s.place, *s.velocity, *s.spin) for k, s in spheres]
+    return data_text(f"spheres of {p.case.case.title}", len(p.model.types), p.box, rows)
 
 
 def _times(name: str, first: int, values: Sequence[float]) -> list[str]:

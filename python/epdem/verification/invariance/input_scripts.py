@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...engines.input_script import Spheres, text
+from ...engines.input_script import data_text, equal_spheres
 from ...engines.lammps.engine import Lammps
 from ...engines.lammps.tables import impact_frames
 from ...engines.liggghts import dump
@@ -16,19 +16,16 @@ from ...engines.liggghts.engine import Liggghts
 from .pairs import Pairs
 
 
-def _box(pairs: Pairs) -> list[tuple[float, float]]:
+def _box(pairs: Pairs) -> tuple[float, ...]:
     """x = 0 is the border between two ranks, z = 0 one of bins."""
     s, y = pairs.spread, pairs.sides[0].place[:, 1]
-    return [(-s, s), (-s, float(y.max()) + s), (-s, s)]
+    return -s, s, -s, float(y.max()) + s, -s, s
 
 
 def data(pairs: Pairs, types: Sequence[str], swap: bool) -> str:
     """The data file of the pairs; `swap`: the targets have the lower ids."""
-    groups = [
-        Spheres(1 + types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
-        for g in pairs.ordered(swap)
-    ]
-    return text("pairs", len(types), _box(pairs), groups)
+    rows = [row for g in pairs.ordered(swap) for row in equal_spheres(1 + types.index(g.body.material), g)]
+    return data_text("pairs", len(types), _box(pairs), rows)
 
 
 def _ranks(variant: str) -> int:
@@ -37,7 +34,7 @@ def _ranks(variant: str) -> int:
 
 def scripts(deck: object, pairs: Pairs, variant: str, engine: str = "liggghts") -> list[str]:
     """The decks of a variant in the order in which they run."""
-    sort = 0.499 * _box(pairs)[2][1] if variant == "sort" else None
+    sort = 0.499 * _box(pairs)[-1] if variant == "sort" else None
     template, common = f"verification/{engine}/invariance.in.j2", {"deck": deck, "ranks": _ranks(variant), "sort": sort}
     return [decks.render(template, **common, **run) for run in pairs.runs(variant, "middle.restart")]
 

@@ -9,11 +9,12 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...engines import input_script
 from ...engines.host import Host
+from ...engines.input_script import data_text, equal_spheres
 from ...engines.liggghts import dump, launcher
 from ...engines.liggghts.engine import Liggghts
 from ...errors import EngineError
+from ...impacts.plan import Group
 from ...laws.library import Array
 from .prescribed import Loads, Motion, Touch, summary
 
@@ -78,9 +79,7 @@ def data(touch: Touch, motion: Motion, types: int) -> str:
     """The data file of both spheres at the start; the target is of the last type."""
     x = touch.experiment
     reach = 4 * max(touch.radii)
-    box = [(float(a.min()) - reach, float(a.max()) + reach) for a in motion.place.reshape(-1, 3).T]
-    spheres = [
-        input_script.Spheres(n, 2 * b.radius, b.density, motion.place[:1, k], motion.velocity[:1, k])
-        for k, (b, n) in enumerate(((x.body, 1), (x.target, types)))
-    ]
-    return input_script.text(motion.name, types, box, spheres)
+    box = [float(x) for a in motion.place.reshape(-1, 3).T for x in (a.min() - reach, a.max() + reach)]
+    sides = [Group(b, motion.place[:1, k], motion.velocity[:1, k]) for k, b in enumerate((x.body, x.target))]
+    rows = [row for kind, g in zip((1, types), sides, strict=True) for row in equal_spheres(kind, g)]
+    return data_text(motion.name, types, box, rows)
