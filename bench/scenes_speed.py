@@ -72,7 +72,7 @@ def files(case: Path, model: str) -> dict[str, str]:
         row_words=tuple(word for word in d.row_words if not word.startswith("c_ratio")),
         contact_columns=scene_deck.contact_columns((), 0, 1),
         wall_contact_columns=scene_deck.contact_columns((), 0, 2),
-        history_columns=(),
+        history={},
         work_words=(),
     )
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}

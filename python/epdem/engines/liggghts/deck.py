@@ -2,7 +2,7 @@
 """The LIGGGHTS decks of impacts and of scenes: all values of the templates."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,21 +89,17 @@ def memory(m: Model, *, wall: bool = False) -> int:
     return law + stamp + others + (len(declarations()[m.law].growth) if m.compaction else 0)
 
 
-def history_columns(m: Model) -> tuple[str, ...]:
-    """Columns that a table of contacts takes of the law's memory, which stands first: the largest overlap of a law that
-    yields, whether bodies that adhere are attached (its root is above 0); last what compaction adds."""
-    columns = ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
-    return columns + tuple(name.replace("_", " ") for name in GROWTH) * m.compaction
-
-
-def history_slots(m: Model, *, wall: bool = False) -> tuple[int, ...]:
-    """Where the history of a contact has these columns, from 1."""
-    first, growth = (*range(1, 1 + m.yields + m.adheres),), declarations()[m.law].growth
+def history(m: Model, *, wall: bool = False) -> dict[str, int]:
+    """Where the history of a contact has our columns, from 1: first the law's, of which the root of `attached` is above
+    0, last what compaction adds."""
+    growth = declarations()[m.law].growth
     begin = memory(m, wall=wall) + 1 - len(growth)
-    return first + tuple(begin + growth.index(name) for name in GROWTH if m.compaction)
+    first = ["delta_max"] * m.yields + ["attached"] * m.adheres
+    places = {name: n for n, name in enumerate(first, 1)}
+    return places | {name: begin + growth.index(name) for name in GROWTH if m.compaction}
 
 
-def contact_columns(slots: Sequence[int], values: int, vectors: int) -> tuple[int, ...]:
+def contact_columns(slots: Collection[int], values: int, vectors: int) -> tuple[int, ...]:
     """Where a local compute has these numbers of the history, the overlap and `vectors` of force: the vectors stand
     behind three ids, then `values` of history, the overlap last."""
     begin = 3 + 3 * vectors
@@ -175,8 +171,8 @@ class SceneDeck:
     phases: tuple[DeckPhase, ...]
     open: bool
     work_words: tuple[str, ...]
-    history_columns: tuple[str, ...]
-    wall_history_slots: tuple[int, ...]
+    history: dict[str, int]
+    wall_history: dict[str, int]
     contact_columns: tuple[int, ...]
     wall_contact_columns: tuple[int, ...]
     row_words: tuple[str, ...]
@@ -211,10 +207,10 @@ def deck(p: ScenePlan) -> SceneDeck:
         phases=commands,
         open=p.ends_early or any(phase.vibrations for phase in commands),
         work_words=tuple(WORKS[name] for name in p.works),
-        history_columns=history_columns(m),
-        wall_history_slots=history_slots(m, wall=True),
-        contact_columns=contact_columns(history_slots(m), memory(m), 1),
-        wall_contact_columns=contact_columns(history_slots(m, wall=True), memory(m, wall=True), 2),
+        history=history(m),
+        wall_history=history(m, wall=True),
+        contact_columns=contact_columns(history(m).values(), memory(m), 1),
+        wall_contact_columns=contact_columns(history(m, wall=True).values(), memory(m, wall=True), 2),
         row_words=("c_ratio[1]", "c_ratio[2]", *row_words(p)),
     )
 

@@ -19,10 +19,11 @@ def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[In
     stream of an earlier phase goes on in this one."""
     names = [part.run.name for part in d.phases]
     for f in d.insertions:
-        if f.once:
+        if f.fill.rate is None:
             yield f
-        elif inserted.get(f.id, 0) < f.count:
-            yield replace(f, phase=names[min(max(names.index(f.phase), phase), len(names) - 1)])
+        elif inserted.get(f"fill{f.number}", 0) < f.fill.count:
+            number = min(max(names.index(f.fill.phase), phase), len(names) - 1)
+            yield replace(f, fill=replace(f.fill, phase=names[number]))
 
 
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
@@ -32,7 +33,7 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     comes = False  # spheres that come with this phase and are not in the restart file
     if number < len(p.phases):
         part = d.phases[number]
-        at_once = [f for f in d.insertions if f.once and f.phase == part.run.name]
+        at_once = [f for f in d.insertions if f.fill.rate is None and f.fill.phase == part.run.name]
         comes = step == begin and bool(part.particles or at_once)
         gone = step - begin
         rest = replace(part, steps=part.steps - gone, stop=later(part.stop, gone, p.every))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...case.parts import SingleSphere
-from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, Vector3, VibrateMove
+from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, VibrateMove
 from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed
@@ -39,24 +39,16 @@ class Template:
 
 @dataclass(frozen=True)
 class InsertFix:
-    """A `fix insert`: a distribution of templates, at once or as a stream.
+    """A `fix insert`: templates by their shares, at once or as a stream. every: steps between two; None: it is one."""
 
-    phase: in which it begins. every: steps between two insertions; None: it is one. once: in one step, so that a
-    continued run has it behind it.
-    """
-
-    id: str
-    phase: str
-    count: int
-    velocity: Vector3
+    number: int
+    fill: filling.Insertion
     seed: int
-    distribution: str
     distribution_seed: int
     templates: tuple[Template, ...]
     region: str
     rate: float | None
     every: int | None
-    once: bool
 
 
 @dataclass(frozen=True)
@@ -168,19 +160,15 @@ def insertions(p: ScenePlan) -> tuple[InsertFix, ...]:
         step = steps[fill.phase]
         result.append(
             InsertFix(
-                id=f"fill{i}",
-                phase=fill.phase,
-                count=fill.count,
-                velocity=fill.velocity,
+                number=i,
+                fill=fill,
                 seed=next(seeds),
-                distribution=f"mix{i}",
                 distribution_seed=next(seeds),
                 templates=templates,
                 region=_region(fill),
                 # insert/pack counts what is in the region before it; a stream faster than a step does not
                 rate=float(f"{2 * fill.count / step:.2g}") if fill.exact else fill.rate,
                 every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.period / step)),
-                once=fill.rate is None,
             )
         )
     return tuple(result)
@@ -355,12 +343,10 @@ def stl_text(name: str, triangles: np.ndarray) -> str:
 
     Corners keep 13 digits, the same ones wherever a corner is repeated: neighbours share them exactly.
     """
-    lines = [f"solid {name}"]
-    for corners in triangles:
-        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-        normal = normal / np.linalg.norm(normal)
-        lines.append("facet normal " + " ".join(f"{x:.9e}" for x in normal))
-        lines.append(" outer loop")
-        lines += ["  vertex " + " ".join(f"{x:.12e}" for x in corner) for corner in corners]
-        lines += [" endloop", "endfacet"]
-    return "\n".join([*lines, f"endsolid {name}", ""])
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    corners = 3 * ("  vertex" + 3 * " %.12e" + "\n")
+    facet = "facet normal" + 3 * " %.9e" + f"\n outer loop\n{corners} endloop\nendfacet\n"
+    rows = np.concatenate([normals[:, None], triangles], axis=1).reshape(-1, 12).tolist()
+    return f"solid {name}\n{''.join(facet % tuple(row) for row in rows)}endsolid {name}\n"

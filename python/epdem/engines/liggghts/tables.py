@@ -2,6 +2,7 @@
 """The trajectory of impacts and the tables of a scene from LIGGGHTS's files, whose formats are in `dump`."""
 
 import math
+import re
 from functools import partial
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from ...scenes.plan import ScenePlan
 from .. import log
 from ..frames import Frames, Kinds
 from . import dump
-from .deck import PATH
+from .deck import PATH, history
 from .launcher import OUT
 from .primitives import overlaps, tubes, walls
 
@@ -72,7 +73,7 @@ def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres; contacts between them and with walls of triangles, which have the columns of the
     law, the overlap [m], the force [N] on the first body and, at walls, the normal; stresses on triangles."""
     found: Kinds = {"particles": ("particles.{}.bin", p.frames, partial(_frame, names=_particle_names(p)))}
-    values, meshes = [*_slots(p), "overlap", *columns.FORCE], _meshes(p)
+    values, meshes = [*history(p.model), "overlap", *columns.FORCE], _meshes(p)
     pairs, touched = ["i", "j", *values], [*["mesh"] * (len(meshes) > 1), "i", *values, *columns.NORMAL]
     found["contacts"] = "contacts.{}.txt", p.contacts, partial(_local, names=pairs)
     found["wall_contacts"] = "wall_contacts.{}.txt", p.contacts * (len(meshes) > 0), partial(_local, names=touched)
@@ -83,14 +84,9 @@ def kinds(p: ScenePlan) -> Kinds:
 
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
-    values = [*_slots(p), *columns.FORCE]
+    values = [*history(p.model), *columns.FORCE]
     names += [f"{value}_{w.name}" for w in walls(p) for value in values] if p.contacts else []
     return [*names, *p.works]
-
-
-def _slots(p: ScenePlan) -> list[str]:
-    """The columns of `deck.history_columns`."""
-    return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + [*columns.GROWTH] * p.model.compaction
 
 
 def particles(frames: Frames) -> pd.DataFrame:
@@ -106,7 +102,8 @@ def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
         values = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
         if p.model.yields:
             values["delta_max"] = np.maximum(spheres[f"delta_max_{w.name}"], overlap)
-        others = {slot: spheres[f"{slot}_{w.name}"] for slot in [*_slots(p), *columns.FORCE] if slot != "delta_max"}
+        names = [name for name in history(p.model) if name != "delta_max"] + columns.FORCE
+        others = {name: spheres[f"{name}_{w.name}"] for name in names}
         others |= {column: normal[:, k] for k, column in enumerate(columns.NORMAL)}
         found.append(pd.DataFrame(values | others))
     return found
@@ -136,19 +133,13 @@ def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
 
 def _fields(path: Path) -> dict[str, np.ndarray]:
     """The numbers of each triangle in a file of LIGGGHTS's `dump mesh/vtk`, sorted by their ids."""
-    lines = path.read_text(encoding="ascii").partition("FieldData")[2].splitlines()[1:]
-    words: dict[str, list[str]] = {}
-    name = ""
-    for line in lines:
-        if line[:1].isalpha():
-            name = line.split()[0]
-            words[name] = []
-        else:
-            words[name] += line.split()
-    count = len(words["area"])
-    found = {name: np.array(values, float).reshape(count, -1) for name, values in words.items()}
-    order = np.argsort(found["meshid"][:, 0])
-    return {name: values[order, 0] for name, values in found.items()}
+    blocks = re.split(r"^(?=[a-zA-Z])", path.read_text(encoding="ascii").partition("FieldData")[2], flags=re.M)[1:]
+    found = {
+        name: np.array(values, float).reshape(int(count), -1)[:, 0]
+        for name, _, count, _, *values in map(str.split, blocks)
+    }
+    order = np.argsort(found["meshid"])
+    return {name: values[order] for name, values in found.items()}
 
 
 def _stresses(p: ScenePlan, wall: str, path: Path) -> pd.DataFrame:
