@@ -245,7 +245,7 @@ def test_python_loads_the_library_of_lammps(tmp_path):
 @needs_lammps
 def test_exported_sources_compile_with_the_headers_of_another_lammps(own_lammps, tmp_path):
     """The CMake project of `epdem export lammps`; one source, because the kernels take a minute."""
-    write_texts(tmp_path / "plugin", {str(to): file.read_text() for to, file in sources.lammps().items()})
+    write_texts(tmp_path / "plugin", {str(to): file.read_text() for to, file in sources.files("lammps").items()})
     project, build = tmp_path / "plugin", tmp_path / "plugin" / "build"
     words = [f"-DLAMMPS_SOURCE_DIR={own_lammps[2]}", f"-DMPI_INCLUDE={sys.prefix}/include"]
     words += ["-DCMAKE_EXPORT_COMPILE_COMMANDS=on", "-DCMAKE_BUILD_TYPE=Debug"]

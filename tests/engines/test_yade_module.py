@@ -64,6 +64,6 @@ def test_the_three_commands_of_an_exported_project_give_yade_the_module(tmp_path
     """The first two have built the module of all tests here; the third one lets a script find it."""
     built = module_folder()
     (tmp_path / "script.py").write_text("import epdem_yade\nprint('FOUND', epdem_yade.__file__)\n")
-    text = sources.yade_commands(built.parent)[2] + "\nyade -n -x script.py\n"
+    text = sources.commands("yade", built.parent)[2] + "\nyade -n -x script.py\n"
     done = subprocess.run(["bash", "-c", text], cwd=tmp_path, env=environment(), capture_output=True, text=True)
     assert f"FOUND {built}/epdem_yade.so" in done.stdout, done.stdout + done.stderr

@@ -48,7 +48,7 @@ def module_folder() -> Path:
                 if not place.exists() or place.read_bytes() != file.read_bytes():  # else nothing is built again
                     place.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(file, place)
-        for command in sources.yade_commands(EXPORTED)[:2]:
+        for command in sources.commands("yade", EXPORTED)[:2]:
             text = command.replace("/path/to/yade", shlex.quote(os.environ["YADE_SOURCE"]))
             done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]

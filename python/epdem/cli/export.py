@@ -34,28 +34,19 @@ def liggghts(
     raise answer({"files": written, "lacks": lacks}, written + lacks, as_json, not lacks)
 
 
-@app.command()
-def yade(
-    out: Annotated[Path, typer.Option("--out", "-o", help="new folder for the sources")],
-    as_json: AsJson = False,
-) -> None:
-    """Write the sources of the module epdem_yade, which gives YADE the contact laws as C++ classes."""
-    from ..engines import sources
+def _project(host: str, about: str) -> None:
+    def export(
+        out: Annotated[Path, typer.Option("--out", "-o", help="new folder for the sources")], as_json: AsJson = False
+    ) -> None:
+        from ..engines import sources
 
-    _write(out, sources.yade(), sources.yade_commands(out), as_json=as_json)
+        written = [str(f) for f in write_project(out, sources.files(host))]
+        raise answer({"files": written}, [*written, "", *sources.commands(host, out)], as_json)
 
-
-@app.command()
-def lammps(
-    out: Annotated[Path, typer.Option("--out", "-o", help="new folder for the sources")],
-    as_json: AsJson = False,
-) -> None:
-    """Write the sources of epdemplugin.so, which gives LAMMPS the contact laws as a pair style and walls."""
-    from ..engines import sources
-
-    _write(out, sources.lammps(), sources.lammps_commands(out), as_json=as_json)
+    app.command(host, help=about)(export)
 
 
-def _write(out: Path, sources: dict[Path, Path], commands: list[str], *, as_json: bool) -> None:
-    written = [str(f) for f in write_project(out, sources)]
-    raise answer({"files": written}, [*written, "", *commands], as_json)
+_project("yade", "Write the sources of the module epdem_yade, which gives YADE the contact laws as C++ classes.")
+_project(
+    "lammps", "Write the sources of epdemplugin.so, which gives LAMMPS the contact laws as a pair style and walls."
+)

@@ -265,9 +265,6 @@ def convert_file(
     return write_own(out, {deck.name: done.text}, force=force), done.notes
 
 
-_ARGUMENT = re.compile(r"\"[^\"]*\"|'[^']*'|\S+")
-
-
 class _Sandbox(ImmutableSandboxedEnvironment):
     """Calls only macros and the methods of plain values: pydantic's and numpy's can read pickles and write files."""
 
@@ -312,7 +309,7 @@ def write(
 
     In the template: `deck` (materials, model, time step ...), `case`, the names of `sets`, and our macros by
     {% import "liggghts/macros.j2" as macros %}. Raises CaseError for a mistake in the template, an undefined name, a
-    set one that is not used, a command that starts a program, or a file of the user's in the way, unless `force`.
+    set one that is not used, or a file of the user's in the way, unless `force`.
     """
     name = template.name.removesuffix(".j2")
     if not name or name == template.name:
@@ -326,7 +323,6 @@ def write(
         values = {"deck": deck, "case": load_impact(case_path)}
         beside = Liggghts().data(deck)
     text, unused = _render(template, values | sets)
-    refuse_programs(text, template)
     if wrong := unused & set(sets):
         raise CaseError(f"--set {min(wrong)}: {template} does not use it; check the spelling")
     return write_own(out, {name: text} | {n: content for n, content in beside.items() if n in text}, force=force)
@@ -363,39 +359,3 @@ def _sentence(template: Path, error: Exception) -> str:
     if isinstance(error, jinja2.TemplateNotFound):
         what = f"{error} is not in {folder}, nor a template of epdem"
     return f"{place}{f':{line}' if line else ''}: {' '.join(what.split())}"
-
-
-def _commands(line: str) -> Iterator[list[str]]:
-    """The words of a command, and of each command that `if`, `run ... every` and `partition` take as an argument."""
-    words = [word.strip("\"'") for word in _ARGUMENT.findall(line)]
-    if not words:
-        return
-    yield words
-    inner: list[str] = []
-    if words[0] == "if":
-        rest = re.split(r"\s(?:then|else)\s|\selif\s+(?:\"[^\"]*\"|'[^']*'|\S+)", line)[1:]
-        inner = [word.strip("\"'") for part in rest for word in _ARGUMENT.findall(part)]
-    elif words[0] == "run":
-        inner = words[words.index("every") + 2 :] if "every" in words else []
-    elif words[0] == "partition":
-        inner = [line.split(maxsplit=3)[-1]]
-    for command in inner:
-        yield from _commands(command)
-
-
-def refuse_programs(text: str, template: Path) -> None:
-    """Raise CaseError for a deck of `template` with `shell` or `python`, or with `include` or `jump` to another folder.
-
-    A command whose name or file is made of variables is refused, too.
-    """
-    for line in re.sub(r"&[ \t]*\n", "", text).splitlines():
-        before, _, _ = line.partition("#")
-        for name, *words in _commands(line if "'" in before or '"' in before else before):
-            file = words[0] if name in ("include", "jump") and words else ""
-            outside = Path(file).is_absolute() or ".." in Path(file).parts
-            if name in ("shell", "python") or "$" in name + file or outside:
-                command = " ".join([name, *words])[:80]
-                raise CaseError(
-                    f"{template}: the deck has {command!r}; a deck of a template starts no program and "
-                    "reads no file of another folder: remove the command, or write this deck by hand"
-                )
