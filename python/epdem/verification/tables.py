@@ -20,7 +20,8 @@ an embedded contact has neither ids nor restarts; inf: the run died or lost bodi
 def crosscheck_tables(title: str, frame: "pd.DataFrame") -> list[Shown]:
     """The tables of a crosscheck: values and errors, then changes in variants of the set-up, and a note."""
     head = f"{title}: values at {frame['speed'].iloc[0]:.4g} m/s, largest errors over speeds and phases"
-    shown: list[Shown] = [frame_table(head, frame[[name for name in VALUES if name in frame]], digits=6)]
+    values = frame[[name for name in VALUES if name in frame]].round({"order": 2, "seconds": 2})
+    shown: list[Shown] = [frame_table(head, values, digits=6)]
     if not (changed := frame.reindex(columns=CHANGES).dropna(subset="momentum")).empty:
         shown.append(frame_table("Two spheres of unequal radii and moduli", changed, digits=2))
     return [*shown, NOTE]
