@@ -76,7 +76,7 @@ def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
 LOCK, MARKER = ".epdem.lock", ".epdem.json"
 # Names that a run may write, in the folder or below it.
 OUTPUTS = re.compile(
-    r"(in|results|log|out|particles|contacts|triangles|restart|picture|path)\..*|(contacts_|wall_contacts|scene|stress_).*"
+    r"(in|results|out|particles|contacts|triangles|restart|picture|path)\..*|(contacts_|wall_contacts|scene|stress_).*"
     r"|.*\.(in|png|svg|pdf|data|stl|so)|(spheres.*|fill[1-9].*|wall_.*|end)\.txt|report\.html|impact\.py"
     r"|(e_n|psi|energy|figure_8_.*|thornton_ning_1998)\.csv",
     re.DOTALL,

@@ -202,18 +202,23 @@ def contact_columns(p: ScenePlan) -> list[str]:
     return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *NORMAL, *FORCE, *BY_LAW]
 
 
+def touching(p: ScenePlan, raw: pd.DataFrame) -> pd.DataFrame:
+    """The rows of an engine's contacts without what is only near: of bodies in contact, or attached."""
+    touch = raw["overlap"] + raw.get("added_overlap", 0.0) > 0
+    attached = raw["attached"] > 0 if p.model.adheres else touch
+    return raw.assign(attached=attached)[touch | attached]
+
+
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """One row per contact and frame, with all that follows by the law, sorted; SI.
 
     raw: step, wall, i, j, overlap, delta_max, force on i; i and j are ids of spheres in any order, or j = 0 and `wall`
     the name of a wall, where the normal is given; with adhesion also whether the bodies are attached, for they may
     overlap in a dent without a contact; with compaction added_overlap, with which the law's overlaps are larger than
-    those of the spheres, and screening. What is only near, neither in contact nor attached, is left out.
+    those of the spheres, and screening. What is only near is left out.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
-    touch = raw["overlap"] + raw.get("added_overlap", 0.0) > 0
-    attached = raw["attached"] > 0 if p.model.adheres else touch
-    raw = raw.assign(attached=attached)[touch | attached]
+    raw = touching(p, raw)
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
     turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary

@@ -105,7 +105,7 @@ def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
         names = [name for name in history(p.model) if name != "delta_max"] + columns.FORCE
         others = {name: spheres[f"{name}_{w.name}"] for name in names}
         others |= {column: normal[:, k] for k, column in enumerate(columns.NORMAL)}
-        found.append(pd.DataFrame(values | others))
+        found.append(columns.touching(p, pd.DataFrame(values | others)))  # of all spheres in all frames few do
     return found
 
 
