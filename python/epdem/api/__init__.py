@@ -14,7 +14,6 @@ from typing import Any, overload
 import pandas as pd
 
 from .. import theory
-from ..base.tables import unit_of
 from ..case.plausibility import case_warnings
 from ..case.scene import is_scene
 from ..case.toml import error_context, read_toml
@@ -45,8 +44,7 @@ log = logging.getLogger("epdem")
 
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
     marked = table.copy()
-    names = {name: unit_of(name, units) for name in map(str, marked.columns)}
-    marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
+    marked.attrs["units"] = {name: units[name] for name in map(str, marked) if name in units}
     return marked
 
 

@@ -72,11 +72,6 @@ def open_results(path: Path | str, what: str) -> Iterator[h5py.File]:
         raise CaseError(f"{path}: not {what}, or damaged ({reason}); run the case again") from None
 
 
-def unit_of(column: str, units: Mapping[str, str]) -> str:
-    """The unit of a column by its name ("x_theory" has the unit of "x"); "" without."""
-    return units.get(column.removesuffix("_theory"), "")
-
-
 def write_array(group: h5py.Group, name: str, data: np.ndarray, *, checksum: bool = True) -> h5py.Dataset:
     """Store an array as the dataset `name`; a large one compressed."""
     large = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if data.size > LARGE else {}
@@ -84,13 +79,13 @@ def write_array(group: h5py.Group, name: str, data: np.ndarray, *, checksum: boo
 
 
 def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -> None:
-    """Store `table` in `group`, its columns with their `units` (see `unit_of`)."""
+    """Store `table` in `group`, its columns with their `units`."""
     for name in table.columns:
         column = table[name].to_numpy()
         if column.dtype == object or column.dtype.kind in "US":
             column = np.array([str(v).encode() for v in column])
         dataset = write_array(group, name, column)
-        if unit := unit_of(name, units):
+        if unit := units.get(name):
             write_attributes(dataset, {"unit": unit})
     group.attrs["columns"] = np.array([name.encode() for name in table.columns], dtype="S")
 

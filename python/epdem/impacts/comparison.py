@@ -42,7 +42,7 @@ COLUMNS = {
     "overlap": Column("m", "overlap"),
     "force": Column("N", "normal force"),
 }
-UNITS = {name: column.unit for name, column in COLUMNS.items() if column.unit}
+UNITS = {f"{name}{of}": column.unit for name, column in COLUMNS.items() for of in ("", "_theory") if column.unit}
 
 
 def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:

@@ -12,7 +12,6 @@ import pandas as pd
 from ..base import __version__
 from ..base.files import claim
 from ..base.paths import product_hash
-from ..base.tables import unit_of
 from ..engines import texts_with_reasons
 from ..engines.citations import citations
 from ..impacts import charts
@@ -151,8 +150,7 @@ def impacts_table(outcome: Outcome) -> Rows:
     rows = outcome.results.comparison
     columns = [*COMPARED[:3], *(k for k in OBLIQUE if k in rows), *COMPARED[3:], "steps_in_contact", "passed"]
     note = "Means over the phases; errors are the largest over the phases. A click on a heading sorts."
-    units = {name: unit_of(name, UNITS) for name in columns}
-    return Rows("Measured and predicted", rows[columns], units, note)
+    return Rows("Measured and predicted", rows[columns], UNITS, note)
 
 
 def _impact_facts(x: Experiment) -> dict[str, str]:

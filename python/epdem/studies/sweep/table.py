@@ -47,8 +47,7 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
     for name in table.columns:
         if of_column := unit(name, sweep.tables) if sweep.scene else UNITS.get(name):
             units[name] = of_column
-    theory = {f"{name}_theory": u for name, u in units.items() if f"{name}_theory" in table}
-    table.attrs["units"] = units | theory
+    table.attrs["units"] = units
     return table
 
 
