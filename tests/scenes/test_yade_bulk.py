@@ -149,9 +149,7 @@ def test_walls_rougher_than_the_spheres_make_them_spin_in_yade(tmp_path):
 @pytest.mark.yade("alone", "module")
 def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
     path = small("settle_glass", tmp_path, FALL | {"error": "1e-2", "duration": '"0.02 s"'})
-    assert (
-        cli.app(["deck", str(path), "--engine", "yade", "--out", str(tmp_path / "deck")], standalone_mode=False) is None
-    )
+    assert not cli.app(["deck", str(path), "--engine", "yade", "--out", str(tmp_path / "deck")], standalone_mode=False)
     with (tmp_path / "deck/scene.py").open("a") as deck:
         deck.write("print('YADE leaves a folder:', Path(O.tmpFilename()).parent.exists(), file=sys.stderr)\n")
     done = subprocess.run(

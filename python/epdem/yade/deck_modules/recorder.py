@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Phases of a scene in YADE, and its output: rows on the screen, frames and contact tables in files."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,29 +15,6 @@ KINDS = ("force", "torque")  # of loads
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, times w, so far
-
-
-class Classes:
-    """The contacts of epdem_yade; law: its functor, with recordStrain."""
-
-    def __init__(self, law: Any):
-        self.law = law
-        self.columns = 13 if law.compaction else 11
-
-    def strain(self) -> tuple[float, float]:
-        """Largest contact radius and overlap over R*, times the share of the weaker body in the strain, so far."""
-        return self.law.largestRadiusRatio, self.law.largestOverlapRatio
-
-    def table(self) -> list[tuple[float, ...]]:
-        """Bodies, overlap, largest overlap [m], 1 if attached, force on the first body [N], unit normal from the second
-        body to the first; with compaction added overlap [m] and gamma."""
-        rows = []
-        for i in (i for i in O.interactions if i.isReal):
-            x, force = i.phys, i.phys.normalForce + i.phys.shearForce  # on the second body, as the normal points to it
-            touch = (i.geom.penetrationDepth, x.deltaMax, x.contactRadius > 0.0)
-            row = (i.id1, i.id2, *touch, *-force, *-i.geom.normal, x.addedOverlap, x.screening)
-            rows.append(row[: self.columns])
-        return rows
 
 
 class Triangles:
@@ -82,7 +59,7 @@ class Triangles:
 class Recorder:
     """Rows, frames and contact tables; all of one row are of one step. SI.
 
-    contacts  strain(), and table(): rows of `columns` numbers; see `Classes`
+    law       functor of the law, with recordStrain
     low, high the room that a sphere must not leave [m], along the last axes if there are fewer than three
     fall      acceleration along z [m/s^2]
     every     steps between two rows
@@ -99,7 +76,7 @@ class Recorder:
         self,
         folder: Path,
         spheres: Spheres,
-        contacts: Any,
+        law: Any,
         *,
         low: Sequence[float],
         high: Sequence[float],
@@ -113,7 +90,7 @@ class Recorder:
         works: Sequence[str] = (),
         triangles: Sequence[tuple[Sequence[int], float]] = (),
     ):
-        self.folder, self.spheres, self.contacts, self.low, self.high = folder, spheres, contacts, low, high
+        self.folder, self.spheres, self.law, self.low, self.high = folder, spheres, law, low, high
         self.every, self.frames, self.spins, self.tables = every, frames, spins, tables
         self.gravity = np.array([0.0, 0.0, fall])
         self.loads, self.moving, self.works, self.triangles = loads, moving, works, Triangles(triangles)
@@ -122,7 +99,7 @@ class Recorder:
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
         self.means = ["wall_power"] * bool(moving) + [f"{kind}_{axis}" for kind in kinds for axis in "xyz"]
         self._sums, self._samples = np.zeros(len(self.means)), 0
-        contacts.strain()  # from now on
+        self.strain()  # from now on
         self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
         self.values: dict[str, float] = {}  # of the last row
         self._begin, self._end, self._records, self._recorded = 0, 0, False, False
@@ -220,7 +197,7 @@ class Recorder:
         v = self.velocities()
         energy = float(0.5 * self.spheres.table[:, 3] @ (v * v).sum(axis=1))
         means = self._sums / max(1, self._samples)
-        found = [len(v), energy, *self.contacts.strain(), *means.tolist()]
+        found = [len(v), energy, *self.strain(), *means.tolist()]
         self.values = dict(zip(self.names, found, strict=True))
         self._sums, self._samples = np.zeros(len(self.means)), 0
         print(f" {O.iter}" + "".join(f" {x:.10g}" for x in found), flush=True)
@@ -251,12 +228,24 @@ class Recorder:
                     energy[k] += i.phys.frictionEnergy / len(spheres)
         return np.array([*energy.values()])
 
+    def strain(self) -> tuple[float, float]:
+        """Largest contact radius and overlap over R*, times the share of the weaker body in the strain, so far."""
+        return self.law.largestRadiusRatio, self.law.largestOverlapRatio
+
+    def contacts(self) -> Iterator[tuple[Any, ...]]:
+        """Bodies, overlap, largest overlap [m], 1 if attached, force on the first body [N], unit normal from the second
+        body to the first, added overlap [m] and gamma."""
+        for i in (i for i in O.interactions if i.isReal):
+            x, force = i.phys, i.phys.normalForce + i.phys.shearForce  # on the second body, as the normal points to it
+            touch = (i.geom.penetrationDepth, x.deltaMax, x.contactRadius > 0.0)
+            yield (i.id1, i.id2, *touch, *-force, *-i.geom.normal, x.addedOverlap, x.screening)
+
     def contact_table(self) -> None:
         """Write every contact, bodies by number. Overlap 0: the bodies have separated since the last table."""
-        number, gone = self.spheres.number, self.spheres.gone
-        here = [row for row in self.contacts.table() if gone.isdisjoint(row[:2])]
+        number, gone, width = self.spheres.number, self.spheres.gone, 13 if self.law.compaction else 11
+        here = [row[:width] for row in self.contacts() if gone.isdisjoint(row[:2])]
         rows = np.array([(number[a], number[b], *values) for a, b, *values in here], float)
-        rows = rows.reshape(-1, self.contacts.columns)
+        rows = rows.reshape(-1, width)
         rows[rows[:, 0] > rows[:, 1], 5:11] *= -1.0  # force and normal of the other body
         rows[:, :2] = np.sort(rows[:, :2], axis=1)
         np.save(self.folder / f"contacts.{O.iter}.npy", rows)
