@@ -319,15 +319,15 @@ def head_on(law: Law, speeds: list[float], text: str, description: str) -> str:
 def oblique(law: Law, speed: float, tangent: float, text: str, description: str) -> str:
     """Both spheres also pass each other; velocities and spins afterwards from 400 springs with partial slip."""
     impact, vt = Impact(law, speed), speed * tangent
-    slip, impulse = rebound(
+    (slip,) = rebound(
         Thornton(E_star=E_STAR, R_star=R_STAR, p_y=P_Y), m_star=MASS / 2, m_tangential=MASS / 7, mu=FRICTION,
         G_star=G_STAR, v_n=speed, slip=np.array([vt]),
     )  # fmt: skip
     dt = float(f"{impact.contact_time / STEPS:.3g}")
     gap = 20.5 * speed * dt
     variables = dict(xmu=FRICTION, vn_in=speed / 2, vt_in=vt / 2, sep=RADIUS + gap / 2, lift=gap / 2 * tangent, dt=dt)
-    variables |= dict(en=impact.e_n, slip_out=float(slip[0]), force_tol=0.01, v_y=law.yield_speed)
-    lost = float(impulse[0]) / MASS
+    variables |= dict(en=impact.e_n, slip_out=float(slip), force_tol=0.01, v_y=law.yield_speed)
+    lost = (vt - float(slip)) / 7  # the impulse, m_tangential times the change of slip, over the mass
     velocity = np.array([-impact.e_n * speed / 2, vt / 2 - lost, 0.0])
     spin = np.array([0.0, 0.0, -2.5 * lost / RADIUS])
     states = dict(vel=[(velocity, -velocity)], omega=[(spin, spin)])
