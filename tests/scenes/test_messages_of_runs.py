@@ -27,7 +27,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.jobs.stage import Inputs, Stage
+from epdem.jobs.stage import Inputs
 from epdem.scenes import columns, meshes, run
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
@@ -141,12 +141,11 @@ def test_jobs_that_slurm_does_not_take(tmp_path, monkeypatch):
 def test_scenes_that_cannot_go_on(tmp_path):
     p = planned("settle")
     place = SimpleNamespace(folder=tmp_path, versions={"liggghts": "1"})
-    work = SimpleNamespace(plan=p, inputs=Inputs({}, ""), versions={"liggghts": "2"}, notes=())
     with says("begun by liggghts 1, and here is liggghts 2; run it anew .--fresh", CaseError):
-        run._resumed(work, place)
+        run._refuse_resume(place, Inputs({}, ""), {"liggghts": "2"})
     empty = {"particles": pd.DataFrame({"step": []})}
     with says("no frame holds a sphere; all have left the room, see"):
-        run._finish(work, tmp_path, Stage(work.inputs, empty, {}), None)
+        run._judge(p, empty, tmp_path)
 
 
 def test_decks_and_studies(tmp_path):

@@ -4,10 +4,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-
-import pandas as pd
 
 from ..base import __version__
 from ..base.files import ResultsFolder, claim, results_folder
@@ -19,7 +16,7 @@ from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Report, silent
-from ..jobs.stage import Inputs, Stage, Tables, compute, inputs, without_comments
+from ..jobs.stage import Inputs, Tables, inputs, without_comments
 from . import checks, measures, pictures, results, stages
 from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
@@ -52,49 +49,25 @@ class SceneOutcome:
         return checks is None or bool(checks["passed"].all())
 
 
-@dataclass(frozen=True)
-class _Work:
-    """A checked case with its plan, engine and inputs."""
-
-    text: str  # of the case
-    plan: ScenePlan
-    engine: SceneEngine
-    version: str  # of the engine
-    inputs: Inputs
-    notes: list[str]
-    named: dict[str, bytes]  # the files that the case names
-    ranks: int
-    report: Report
-
-    @cached_property
-    def versions(self) -> dict[str, str]:
-        """Versions of the programs that a continued run needs again."""
-        return {self.engine.name: self.version, "epdem": __version__}
-
-
 def _facts(p: ScenePlan) -> object:
     """Names in the tables that the engine's files may lack."""
     return [wall.name for wall in p.scene.wall], [(phase.name, phase.end) for phase in p.phases]
 
 
-def _stored(folder: Path) -> results.SceneResults | None:
+def _stored(folder: Path, key: str) -> results.SceneResults | None:
+    """The results in a folder if they belong to these inputs."""
     try:
-        return results.read(folder / "results.h5")
+        old = results.read(folder / "results.h5")
     except CaseError:
         return None  # of another version: made anew
+    return old if old.attributes.get("inputs") == key else None
 
 
-def run_plan(
-    p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = silent
-) -> dict[str, pd.DataFrame]:
+def run_plan(p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
     engine.check(p)
-    now = inputs(engine, p, version="", ranks=ranks)
-    return compute(engine, p, folder, _unchanged, now, ranks=ranks, report=report).tables
-
-
-def _unchanged(tables: Tables) -> tuple[Tables, dict[str, float]]:
-    return tables, {}
+    engine.write(p, folder)
+    return engine.run(p, folder, ranks=ranks, report=report)
 
 
 def run(
@@ -125,51 +98,75 @@ def run(
     with error_context(place):
         given = inputs(engine, p, version=version, facts=_facts(p), ranks=ranks)
     beside = Path(str(place)).parent
-    contents = {name: (beside / name).read_bytes() for name in sorted(file_names(toml_tables(text, place)))}
-    work = _Work(text, p, engine, version, given, notes, contents, ranks, lambda step: report(step, p.steps))
+    named = {name: (beside / name).read_bytes() for name in sorted(file_names(toml_tables(text, place)))}
+    versions = {engine.name: version, "epdem": __version__}
     folder = results_folder(out, p.case.name, "" if engine.name == DEFAULT_ENGINE else engine.name)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    with claim(folder, force=force, files=given.files) as place:
-        return _resumed(work, place) if resume else _computed(work, place, None if fresh else _stored(folder))
+    begin, total = None, p.steps
+    with claim(folder, force=force, files=given.files) as kept:
+        start, old = time.perf_counter(), None if fresh or resume else _stored(folder, given.key)
+        if old:
+            tables = results.engine_tables(p, old.tables)
+        elif resume:
+            _refuse_resume(kept, given, versions)
+            tables, resumed = engine.resume(p, folder, ranks=ranks, report=lambda step: report(step, total))
+            begin, notes = resumed.step, [*notes, *_left_out(folder, resumed)]
+        else:
+            kept.note(versions)
+            engine.put(given.files, folder)
+            tables = engine.run(p, folder, ranks=ranks, report=lambda step: report(step, total))
+        seconds = 0.0 if old else time.perf_counter() - start
+        p = _as_run(p, tables)
+        tables = _judge(p, tables, folder)
+        about = {
+            "case": p.case.name,
+            "epdem": __version__,
+            "engine": engine.name,
+            f"version_{engine.name}": version,
+            "ranks": ranks,
+            "time_step": p.time_step,
+            "steps": p.steps,
+            "inputs": given.key,
+            "seconds": seconds,
+        }
+        decks = {name: text for name, text in given.files.items() if "/" not in name}  # without modules
+        found = results.SceneResults(text, old.attributes if old else about, tables, decks, named)
+        if old is None or not found.equals(old):
+            results.write(folder / "results.h5", p, found)
+    warnings = [*notes, *measured_warnings(p, tables), *lost_spheres(p, tables)]
+    return SceneOutcome(p, folder, found, seconds, old is not None, begin, warnings)
 
 
-def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
+def _refuse_resume(kept: ResultsFolder, given: Inputs, versions: dict[str, str]) -> None:
+    """Raise CaseError for a run of other inputs or other programs."""
+    folder = kept.folder
+    if not all(
+        (folder / name).exists()
+        and without_comments((folder / name).read_text(encoding="utf-8")) == without_comments(text)
+        for name, text in given.files.items()
+    ):
+        raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
+    if kept.versions != versions:
+        was, now = (", ".join(f"{k} {v}" for k, v in found.items()) for found in (kept.versions, versions))
+        begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
+        raise CaseError(f"{begun}; run it anew (--fresh)")
+
+
+def _left_out(folder: Path, resumed: Resumed) -> list[str]:
+    """A sentence on frames that are not whole."""
+    if not resumed.lost:
+        return []
+    steps = ("step " if len(resumed.lost) == 1 else "steps ") + ", ".join(map(str, resumed.lost))
+    return [f"{folder}: the frames of {steps} are missing or not whole, and left out; --fresh runs the scene anew"]
+
+
+def _as_run(p: ScenePlan, tables: Tables) -> ScenePlan:
     if not p.ends_early:
         return p
     phases = tables["phases"]
     ends = dict(zip(phases["phase"], phases["end"].astype(int), strict=True))
     return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
-
-
-def _computed(work: _Work, place: ResultsFolder, old: results.SceneResults | None) -> SceneOutcome:
-    """The outcome of stored tables if they belong to these inputs, else of a run."""
-    stored, folder = None, place.folder
-    if old and old.attributes.get("inputs") == work.inputs.key:
-        stored = Stage(work.inputs, results.engine_tables(work.plan, old.tables), {})
-    else:
-        place.note(work.versions)
-    stage = compute(
-        work.engine, work.plan, folder, _unchanged, work.inputs, ranks=work.ranks, report=work.report, stored=stored
-    )
-    return _finish(work, folder, stage, old if stored else None)
-
-
-def _resumed(work: _Work, place: ResultsFolder) -> SceneOutcome:
-    start, folder = time.perf_counter(), place.folder
-    if not all(
-        (folder / name).exists()
-        and without_comments((folder / name).read_text(encoding="utf-8")) == without_comments(text)
-        for name, text in work.inputs.files.items()
-    ):
-        raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
-    if place.versions != work.versions:
-        was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
-        begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
-        raise CaseError(f"{begun}; run it anew (--fresh)")
-    tables, resumed_run = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
-    stage = Stage(work.inputs, tables, {"seconds": time.perf_counter() - start})
-    return _finish(work, folder, stage, None, resumed_run)
 
 
 def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
@@ -189,35 +186,3 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
         tables["rows"] = measures.with_loads(p, tables["rows"])
         tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
     return tables
-
-
-def _finish(
-    work: _Work, folder: Path, stage: Stage, old: results.SceneResults | None, resumed_run: Resumed | None = None
-) -> SceneOutcome:
-    """Judge the tables of a stage and store them; `old`: the file from which they come."""
-    p = _as_run(work.plan, stage.tables)
-    tables = _judge(p, stage.tables, folder)
-    about = {
-        "case": p.case.name,
-        "epdem": __version__,
-        "engine": work.engine.name,
-        f"version_{work.engine.name}": work.version,
-        "ranks": work.ranks,
-        "time_step": p.time_step,
-        "steps": p.steps,
-        "inputs": work.inputs.key,
-        "seconds": stage.seconds.get("seconds", 0.0),
-    }
-    decks = {name: text for name, text in work.inputs.files.items() if "/" not in name}  # without modules
-    left_out = []
-    if resumed_run and resumed_run.lost:
-        steps = ("step " if len(resumed_run.lost) == 1 else "steps ") + ", ".join(map(str, resumed_run.lost))
-        advice = "are missing or not whole, and left out; --fresh runs the scene anew"
-        left_out = [f"{folder}: the frames of {steps} {advice}"]
-    kept = results.SceneResults(work.text, old.attributes if old else about, tables, decks, work.named)
-    if old is None or not kept.equals(old):
-        results.write(folder / "results.h5", p, kept)
-    warnings = [*work.notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *left_out]
-    begin = resumed_run.step if resumed_run else None
-    seconds = stage.seconds.get("seconds", 0.0)
-    return SceneOutcome(p, folder, kept, seconds, stage.reused, begin, warnings)
