@@ -8,10 +8,11 @@ import pytest
 
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
-from epdem.engines import texts_with_reasons
+from epdem.engines import scene_engine, texts_with_reasons
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import Plan, plan
 from epdem.impacts.prediction import predict
+from epdem.jobs.stage import texts
 from epdem.scenes.plan import ScenePlan
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -35,6 +36,13 @@ def compare(folder: Path, name: str, text: str) -> None:
         stored.write_text(text)
         pytest.fail(f"{stored} did not exist and was written; look at it and run again")
     assert rounded(text) == rounded(stored.read_text())
+
+
+def checked_deck(p: ScenePlan) -> dict[str, str]:
+    """The texts of a scene's LIGGGHTS files by their path. Raises CaseError."""
+    engine = scene_engine("liggghts")
+    engine.check(p)
+    return texts(engine, p)
 
 
 def reasons(job: Plan | ScenePlan) -> list[tuple[str, str, str]]:

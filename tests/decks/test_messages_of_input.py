@@ -6,10 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from stored_decks import checked_deck
 
 from epdem.case import impact, scene, sizes
 from epdem.case.toml import read_toml
-from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.impacts import plan as impacts_plan
 from epdem.impacts.experiment import experiment
@@ -17,7 +17,6 @@ from epdem.impacts.plan import plan as plan_impacts
 from epdem.impacts.prediction import predict
 from epdem.laws.library import Law
 from epdem.scenes import placement
-from epdem.scenes.engine import files
 from epdem.scenes.measures import refuse_measures
 from epdem.scenes.plan import plan
 from epdem.verification.models.theories import Mdr
@@ -59,7 +58,7 @@ def refused(base: str | dict, changes: dict, says: str, folder: Path) -> None:
         if "scene" in data:
             p = plan(scene.parse(data, folder / "case.toml"))
             refuse_measures(p)
-            files(scene_engine("liggghts"), p)
+            checked_deck(p)
             placement.spheres(p)
         else:
             x = experiment(impact.parse(data, "case.toml"))

@@ -14,20 +14,19 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from stored_decks import checked_deck
 from strategies import CASES, FILES, cases, damaged, numbers, quantities, toml, values, words
 
 from epdem.case import impact, scene
 from epdem.case.plausibility import case_warnings
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
-from epdem.engines import scene_engine
 from epdem.engines.liggghts.own_decks import write
 from epdem.engines.yade import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import COLUMNS, predict
-from epdem.scenes.engine import files
 from epdem.scenes.plan import plan as plan_scene
 
 FOREIGN = re.compile(r"Input should|should have|Field required|valid (number|string|list)|function-|pydantic|Traceback")
@@ -43,7 +42,7 @@ def carried_out(data: dict) -> None:
         p = plan_scene(scene.parse(data))
         for sentence in case_warnings(p.case):
             one_sentence(sentence)
-        assert all(files(scene_engine("liggghts"), p).values())
+        assert all(checked_deck(p).values())
         if p.case.scene.count <= 2000:
             scene_deck.files(p)
         return

@@ -14,7 +14,7 @@ from epdem.engines.frames import Frames
 from epdem.engines.lammps import launcher, resume
 from epdem.engines.lammps import tables as tables
 from epdem.errors import CaseError
-from epdem.scenes.engine import write_deck
+from epdem.jobs.stage import write_deck
 from epdem.scenes.plan import plan
 
 pytestmark = needs_lammps

@@ -23,11 +23,12 @@ from ..engines.citations import Citations, citations
 from ..errors import CaseError
 from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment
+from ..impacts.plan import plan as plan_impacts
 from ..impacts.prediction import predict as predict_experiment
-from ..impacts.run import Outcome, write_deck
+from ..impacts.run import Outcome
 from ..impacts.run import run as run_impacts
+from ..jobs.stage import write_deck
 from ..scenes.columns import units as scene_units
-from ..scenes.engine import write_deck as write_scene_deck
 from ..scenes.plan import plan as plan_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.run import run as run_scene
@@ -182,11 +183,12 @@ def deck(
         for sentence in case_warnings(case.model):
             warn(sentence)
         if isinstance(case, Case):
-            return write_deck(experiment(case.model, law), engine_named(engine), folder, force=force)
+            x = experiment(case.model, law)
+            return write_deck(engine_named(engine), plan_impacts(x, predict_experiment(x)), folder, force=force)
         p = plan_scene(case.model)
         for sentence in planned_warnings(p):
             warn(sentence)
-        return write_scene_deck(scene_engine(engine), p, folder, force=force)
+        return write_deck(scene_engine(engine), p, folder, force=force)
 
 
 def cite(

@@ -16,12 +16,12 @@ from ..case.impact import Case, parse
 from ..case.plausibility import case_warnings
 from ..case.toml import LoadedCase, error_context, read_toml, text_of
 from ..errors import CaseError
-from ..jobs.engine import Feature, require
+from ..jobs.engine import require
 from ..jobs.stage import Inputs, Stage, Tables, compute, inputs
 from . import store
 from .comparison import compare
 from .engine import ImpactEngine, Trajectory, check_plan
-from .experiment import Experiment, experiment
+from .experiment import experiment
 from .measurement import measure, sample_impacts
 from .plan import Plan, plan
 from .prediction import Prediction, predict
@@ -72,15 +72,6 @@ def _facts(p: Plan) -> object:
     friction = (o.angle.tobytes(), o.spin.tobytes(), o.friction, o.tangential) if o else None
     numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
     return x.law, x.body, x.target, x.viscous_restitution, friction, numbers
-
-
-def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool = False) -> list[Path]:
-    """Write the deck of an experiment into `folder`, where `force` allows other files; its files. Raises CaseError."""
-    if Feature.DECK not in tool.features:
-        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts, lammps or yade")
-    p = plan(x, predict(x))
-    with claim(folder, force=force):
-        return tool.write(p, folder)
 
 
 def stored_results(path: Path) -> store.Results:

@@ -12,7 +12,9 @@ from typing import TypeVar
 
 import pandas as pd
 
-from .engine import Engine, Report, silent
+from ..base.files import claim
+from ..errors import CaseError
+from .engine import Engine, Feature, Report, silent
 
 Tables = dict[str, pd.DataFrame]
 Job = TypeVar("Job")
@@ -60,6 +62,16 @@ def parts_hash(tool: Engine[Job, Result]) -> str:
 @cache
 def _file_hash(path: Path, changed: int, size: int) -> bytes:
     return path.name.encode() + hashlib.sha256(path.read_bytes()).digest()
+
+
+def write_deck(tool: Engine[Job, Result], job: Job, folder: Path, *, force: bool = False) -> list[Path]:
+    """Write the deck of a job into `folder`, where `force` allows other files; its files. Raises CaseError."""
+    if Feature.DECK not in tool.features:
+        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts, lammps or yade")
+    tool.check(job)
+    files = tool.files(job)
+    with claim(folder, force=force, files=files):
+        return tool.put(files, folder)
 
 
 def inputs(tool: Engine[Job, Result], job: Job, *, version: str, facts: object = (), ranks: int = 1) -> Inputs:

@@ -15,10 +15,10 @@ from ..case.toml import LoadedCase, error_context, file_names, text_of
 from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from ..jobs.engine import Report, silent
+from ..jobs.engine import Feature, Report, refuse_ranks, silent
 from ..jobs.stage import Inputs, Tables, inputs, without_comments
 from . import checks, measures, pictures, results, stages
-from .engine import Resumed, SceneEngine, check_run
+from .engine import Resumed, SceneEngine
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import lost_spheres, measured_warnings, planned_warnings
@@ -93,7 +93,11 @@ def run(
         pictures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
         notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
-    check_run(engine, ranks=ranks, resume=resume)
+    refuse_ranks(engine, ranks)
+    if resume and Feature.RESTART not in engine.features:
+        raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
+    if reason := engine.missing():
+        raise EngineError(reason)
     version = engine.version()
     with error_context(place):
         given = inputs(engine, p, version=version, facts=_facts(p), ranks=ranks)
