@@ -6,8 +6,7 @@ from ..base.rendering import with_reasons
 from ..errors import CaseError
 from ..impacts.engine import ImpactEngine, Trajectory
 from ..impacts.plan import Plan
-from ..scenes.engine import SceneEngine
-from ..scenes.plan import ScenePlan
+from ..scenes.plan import SceneEngine, ScenePlan
 from .embedded import Embedded
 from .lammps.engine import Lammps
 from .liggghts.engine import Liggghts

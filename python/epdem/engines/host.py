@@ -18,9 +18,8 @@ from ..impacts.prediction import predict
 from ..jobs.engine import Engine, Report, check_law, silent
 from ..jobs.stage import Tables, parts_hash
 from ..scenes.columns import named_rows
-from ..scenes.engine import Resumed
 from ..scenes.model import Model
-from ..scenes.plan import ScenePlan
+from ..scenes.plan import Resumed, ScenePlan
 from ..scenes.plan import plan as plan_scene
 from . import log
 from .frames import Frames

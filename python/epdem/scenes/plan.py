@@ -3,8 +3,10 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from types import MappingProxyType
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
@@ -13,6 +15,8 @@ from ..case.outputs import Row
 from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
 from ..case.walls import CasePhase, Limits, LinearMove, Move, RotateMove, Vector3
+from ..jobs.engine import Engine, Report
+from ..jobs.stage import Tables
 from . import meshes
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
@@ -434,3 +438,18 @@ def plan(case: SceneCase) -> ScenePlan:
         pictures=interval(out.pictures),
         restarts=interval(out.restarts, whole),
     )
+
+
+@dataclass(frozen=True)
+class Resumed:
+    """Step from which a run was continued; `lost`: steps of earlier frames that are missing or not whole."""
+
+    step: int
+    lost: list[int] = field(default_factory=list)
+
+
+class SceneEngine(Engine[ScenePlan, Tables], Protocol):
+    """An engine of scenes, whose tables are rows, particles, contacts, walls and phases, as far as a plan has them."""
+
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+        """Continue a run from its newest restart file. Raises CaseError if there is none, EngineError."""

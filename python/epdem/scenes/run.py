@@ -18,8 +18,7 @@ from ..impacts.prediction import predict
 from ..jobs.engine import Feature, Report, refuse_ranks, silent
 from ..jobs.stage import Inputs, Tables, inputs, without_comments
 from . import checks, measures, pictures, results, stages
-from .engine import Resumed, SceneEngine
-from .plan import ScenePlan, plan
+from .plan import Resumed, SceneEngine, ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import lost_spheres, measured_warnings, planned_warnings
 

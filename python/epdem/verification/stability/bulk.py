@@ -18,9 +18,8 @@ from ...errors import CaseError
 from ...laws.strengths import default_numbers, find_law, yields_by_stress
 from ...scenes.checks import energy_balance, kinetic
 from ...scenes.columns import last_frame
-from ...scenes.engine import SceneEngine
 from ...scenes.model import pair_law
-from ...scenes.plan import ScenePlan, plan
+from ...scenes.plan import SceneEngine, ScenePlan, plan
 from ...scenes.run import run_plan
 from ...scenes.timestep import stable_step
 from ...theory.backbones import LAWS
