@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from epdem.case import scene
@@ -30,9 +31,10 @@ def bed(name):
 @pytest.mark.parametrize("name", ["settle_glass", "adhesive_powder"])
 def test_a_hundred_thousand_radii_take_less_than_a_second_and_each_row_is_that_of_the_theory(name):
     p, R_star, overlap, largest = bed(name)
-    one = np.ones(N, int)
+    contacts = pd.DataFrame({"i": 1, "j": 1, "R_star": R_star, "radius": 2 * R_star, "overlap": overlap})
+    contacts = contacts.assign(largest=largest, attached=True, screening=1.0)
     begin = time.process_time()
-    table = columns.energies(p, one, one, R_star, 2 * R_star, overlap, largest, np.ones(N, bool), np.ones(N))
+    table = columns.energies(p, contacts)
     assert time.process_time() - begin < 1.0
     spec, E_star = pair_law(p.case, p.model.types[0].material, p.model.types[0].material)
     for k in range(0, N, N // 50):

@@ -6,7 +6,6 @@ Overlap and largest overlap of a contact come from the engine, all other quantit
 
 import math
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -223,22 +222,12 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         return pd.DataFrame(columns=contact_columns(p))
     turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary
     raw.loc[turned, FORCE] *= -1.0
-    raw = raw.assign(i=raw["i"].where(~turned, raw["j"]), j=raw["j"].where(~turned, raw["i"]))
-    known = spheres.set_index(["step", "id"])[["radius", "type", *"xyz"]]
-    first = known.reindex(pd.MultiIndex.from_frame(raw[["step", "i"]].astype("int64")))
-    second = known.reindex(pd.MultiIndex.from_frame(raw[["step", "j"]].astype("int64")))
-    unknown = first["radius"].isna().to_numpy() | (second["radius"].isna().to_numpy() & (raw["j"] != 0).to_numpy())
-    unknown |= (raw["j"] == 0).to_numpy() & (raw["wall"] == "").to_numpy()
+    raw = raw.assign(i=raw["i"].where(~turned, raw["j"]), j=raw["j"].where(~turned, raw["i"])).reset_index(drop=True)
+    first, second = bodies(p, raw, spheres)
+    unknown = first["type"].isna() | second["type"].isna()
     if unknown.any():
         step = int(raw["step"][unknown].iloc[0])
         raise EngineError(f"{folder}: the contacts of step {step} are damaged: no such spheres; run the case again")
-    radius_j = second["radius"].fillna(math.inf).to_numpy()
-    type_j = np.where(raw["j"] == 0, raw["wall"].map(p.wall_types), second["type"]).astype(int)
-    radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)
-    R_star = 1.0 / (1.0 / radius_i + 1.0 / radius_j)
-    added, screening = (raw[name].to_numpy() for name in GROWTH) if p.model.compaction else (0.0, np.ones(len(raw)))
-    overlap, largest = raw["overlap"].to_numpy() + added, raw["delta_max"].to_numpy() + added
-    screening = np.where(screening > 0.0, screening, 1.0)  # 0: of a new contact
     between = (raw["j"] != 0).to_numpy()[:, None]
     apart = np.where(between, first[[*"xyz"]].to_numpy() - second[[*"xyz"]].to_numpy(), 0.0)
     if p.scene.periodic:
@@ -246,32 +235,32 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         apart[:, :2] -= sides * np.round(apart[:, :2] / sides)
     at_walls = raw[NORMAL].to_numpy(float) if NORMAL[0] in raw else np.zeros((len(raw), 3))
     raw = raw.assign(**dict(zip(NORMAL, np.where(between, _unit(apart), at_walls).T, strict=True)))
-    law = energies(p, type_i, type_j, R_star, radius_i, overlap, largest, raw["attached"].to_numpy(), screening)
-    table = raw[contact_columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
+    added = raw["added_overlap"] if p.model.compaction else 0.0
+    known = pd.DataFrame({"i": first["type"], "j": second["type"], "radius": first["radius"]})
+    known["R_star"] = reduced(first["radius"], second["radius"])
+    known["overlap"], known["largest"] = raw["overlap"] + added, raw["delta_max"] + added
+    known["attached"] = raw["attached"]
+    known["screening"] = raw["screening"].where(raw["screening"] > 0.0, 1.0) if p.model.compaction else 1.0  # 0: new
+    table = raw[contact_columns(p)[: -len(BY_LAW)]].join(energies(p, known))
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
 
 
-class BodyPairs(NamedTuple):
-    """Bodies of contacts, arrays of shape (n,): R* [m], m* [kg], radius of i [m], types of both."""
+def bodies(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The two bodies of each contact: their rows of the frames; a wall has its type and endless radius and mass. NaN:
+    there is no such sphere."""
+    known = spheres.set_index(["step", "id"])[["type", "radius", "mass", *"xyz"]]
+    keys = (pd.MultiIndex.from_frame(contacts[["step", body]].astype("int64")) for body in "ij")
+    first, second = (known.reindex(key).reset_index(drop=True) for key in keys)
+    wall = contacts["wall"].map(p.wall_types).to_numpy()
+    second.loc[wall > 0, ["radius", "mass"]] = math.inf
+    second["type"] = second["type"].fillna(pd.Series(wall))
+    return first, second
 
-    R_star: Array
-    m_star: Array
-    radius_i: Array
-    type_i: npt.NDArray[np.int64]
-    type_j: npt.NDArray[np.int64]
 
-
-def body_pairs(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> BodyPairs:
-    """The bodies of a table of contacts, from the frames of the spheres."""
-    known = spheres.groupby("id")[["radius", "mass", "type"]].first()
-    first, second = known.reindex(contacts["i"]), known.reindex(contacts["j"])
-    R_star, m_star = (
-        1.0 / (1.0 / first[name].to_numpy() + 1.0 / second[name].fillna(math.inf).to_numpy())
-        for name in ("radius", "mass")
-    )
-    type_j = np.where(contacts["j"] == 0, contacts["wall"].map(p.wall_types), second["type"]).astype(int)
-    return BodyPairs(R_star, m_star, first["radius"].to_numpy(), first["type"].to_numpy(int), type_j)
+def reduced(one: pd.Series, other: pd.Series) -> Array:
+    """Reduced radius [m] or mass [kg] of two bodies."""
+    return np.asarray(1.0 / (1.0 / one + 1.0 / other))
 
 
 def _unit(vectors: Array) -> Array:
@@ -280,53 +269,33 @@ def _unit(vectors: Array) -> Array:
     return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
 
 
-def energies(
-    p: ScenePlan,
-    type_i: Array,
-    type_j: Array,
-    R_star: Array,
-    radius_i: Array,
-    overlap: Array,
-    delta_max: Array,
-    attached: npt.NDArray[np.bool_],
-    screening: Array,
-) -> pd.DataFrame:
-    """The columns BY_LAW of contacts; arrays of shape (n,)."""
-    out = pd.DataFrame(0.0, index=range(len(overlap)), columns=BY_LAW)
-    material = ["", *(t.material for t in p.model.types)]
-    for (a, b), of_types in pd.DataFrame({"a": type_i, "b": type_j}).groupby(["a", "b"]).indices.items():
-        spec, E_star = pair_law(p.case, material[a], material[b])
-        shares = np.round(spec.curvature_share(R_star[of_types], radius_i[of_types]), 12)  # a law for each size
-        for share in np.unique(shares):
-            at = of_types[shares == share]
-            of_contacts = (x[at] for x in (R_star, radius_i, overlap, delta_max, attached, screening))
-            for name, value in _one_law(spec, E_star, *of_contacts).items():
-                out.loc[at, name] = value
+def energies(p: ScenePlan, contacts: pd.DataFrame) -> pd.DataFrame:
+    """The columns BY_LAW of contacts, of which these are known: i, j (types), R_star, radius of i [m], overlap, largest
+    [m], attached, screening."""
+    out = pd.DataFrame(0.0, index=contacts.index, columns=BY_LAW)
+    for (i, j), of_types in contacts.groupby(["i", "j"]):
+        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
+        shares = np.round(spec.curvature_share(of_types["R_star"].to_numpy(), of_types["radius"].to_numpy()), 12)
+        for _, at in of_types.groupby(shares):  # a law for each size
+            out.loc[at.index, BY_LAW] = np.column_stack(_one_law(spec, E_star, at))
     return out
 
 
-def _one_law(
-    spec: LawSpec,
-    E_star: float,
-    R: np.ndarray,
-    radius: np.ndarray,
-    overlap: np.ndarray,
-    largest: np.ndarray,
-    attached: np.ndarray,
-    screening: np.ndarray,
-) -> dict[str, np.ndarray]:
-    """Contacts of one curvature_share; R*, the radius of i [m] and the other arrays have the shape (n,).
+def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Array, ...]:
+    """The columns BY_LAW of contacts of one curvature_share.
 
     A screened contact gives back G = 1 - (1 - gamma) (1 - alpha_Y/b) of the overlap that it would give back alone from
     its largest overlap b: the force is the force of the contact alone at b - (b - overlap)/G.
     """
+    R, radius, overlap, largest, screening = (
+        contacts[name].to_numpy(float) for name in ("R_star", "radius", "overlap", "largest", "screening")
+    )
+    largest = np.maximum(largest, overlap)
     if spec.adheres:
-        adhesive = spec.adhesive(E_star=E_star, R_star=R)
-        return _with_adhesion(adhesive, overlap, np.maximum(largest, overlap), attached)
+        return _with_adhesion(spec.adhesive(E_star=E_star, R_star=R), overlap, largest, contacts["attached"].to_numpy())
     theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
     share = float(spec.curvature_share(R[0], radius[0]))
     law = Law(spec.name, E_star=E_star, share=share, **spec.parameters)
-    largest = np.maximum(largest, overlap)
     given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
     overlap = largest - (largest - overlap) / given_back
     force, radius, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
@@ -338,26 +307,14 @@ def _one_law(
     at_nodes = [np.broadcast_to(x[:, None], delta.shape).ravel() for x in (R, largest)]
     F, _, _ = law.step(R_star=at_nodes[0], delta_max=at_nodes[1], delta=delta.ravel())
     elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
-    return {
-        "force": force,
-        "contact_radius": np.where(force > 0.0, radius, 0.0),
-        "residual_overlap": largest - given_back * (largest - residual),
-        "dent_radius": np.where(plastic > 0.0, dent, 0.0),
-        "plastic_work": plastic,
-        "elastic_energy": given_back * elastic,
-    }
+    radius = np.where(force > 0.0, radius, 0.0)
+    dent = np.where(plastic > 0.0, dent, 0.0)
+    return force, radius, largest - given_back * (largest - residual), dent, plastic, given_back * elastic
 
 
-def _with_adhesion(law: JKR, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray) -> dict[str, np.ndarray]:
+def _with_adhesion(law: JKR, overlap: Array, largest: Array, attached: Array) -> tuple[Array, ...]:
     top = np.maximum(law.radius(largest), law.touch_radius)
     branch, dent = law.branch(top)
-    dented = dent > 0
     a = np.where(attached, branch.radius(overlap - dent), 0.0)
-    return {
-        "force": np.where(attached, branch.force(a), 0.0),
-        "contact_radius": a,
-        "residual_overlap": dent,
-        "dent_radius": np.where(dented, top, 0.0),
-        "plastic_work": plastic_work(law, top),
-        "elastic_energy": np.where(attached, branch.energy(a), 0.0),
-    }
+    force, energy = (np.where(attached, found, 0.0) for found in (branch.force(a), branch.energy(a)))
+    return force, a, dent, np.where(dent > 0, top, 0.0), plastic_work(law, top), energy

@@ -9,7 +9,7 @@ import pandas as pd
 from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
-from .columns import body_pairs, columns_of_rows, last_frame
+from .columns import bodies, columns_of_rows, last_frame, reduced
 from .meshes import FloatArray
 from .model import pair_law
 from .plan import ScenePlan
@@ -197,15 +197,15 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     contacts = tables["contacts"]
-    largest = contacts.groupby(["wall", "i", "j"], as_index=False)["delta_max"].max()
-    both = body_pairs(p, largest, tables["particles"])
-    types = pd.DataFrame({"a": both.type_i, "b": both.type_j})
-    speeds = np.zeros(len(types))
-    for (a, b), at in types.groupby(["a", "b"]).indices.items():
+    largest = contacts.loc[contacts.groupby(["wall", "i", "j"])["delta_max"].idxmax()]
+    one, other = bodies(p, largest, tables["particles"])
+    R_star, m_star = (reduced(one[name], other[name]) for name in ("radius", "mass"))
+    speeds = np.zeros(len(one))
+    for (a, b), at in one.groupby([one["type"], other["type"]]).indices.items():
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
-        law = spec.backbone(E_star=E_star, R_star=both.R_star[at], radius=both.radius_i[at])
+        law = spec.backbone(E_star=E_star, R_star=R_star[at], radius=one["radius"].to_numpy()[at])
         work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
-        speeds[at] = np.sqrt(2.0 * work / both.m_star[at])
+        speeds[at] = np.sqrt(2.0 * work / m_star[at])
     return speeds
 
 

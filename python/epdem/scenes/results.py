@@ -5,7 +5,7 @@ Offsets and positions of walls alone are stored in /VTKHDF: values of spheres an
 the tables. VTKHDF 2.2: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format. Names of arrays are those of
 ON-DEM's schema where the schema has one: https://github.com/ON-DEM/ON-DEM-WG3-FileFormat."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -19,7 +19,7 @@ from ..base import tables as h5
 from ..base.tables import write_array, write_attributes
 from ..jobs.stage import Tables
 from . import meshes
-from .columns import FORCE, NORMAL, SPINS, columns_of_rows, units
+from .columns import FORCE, NORMAL, SPINS, bodies, columns_of_rows, units
 from .meshes import FloatArray, at_end
 from .plan import ScenePlan
 
@@ -128,7 +128,7 @@ def write_vtkhdf(file: h5py.File, p: ScenePlan, tables: dict[str, pd.DataFrame])
         data[NAMES.get(name, name)] = file["particles"][name]
     blocks.offsets(block, "PointData", first)
     if not (contacts := tables.get("contacts", pd.DataFrame())).empty:
-        _add_contacts(blocks, file["contacts"], contacts, spheres, steps)
+        _add_contacts(blocks, file["contacts"], contacts, bodies(p, contacts, spheres), steps)
 
     for name, points, triangles, shown in _walls(p, steps):
         places, start = _distinct(points)
@@ -143,13 +143,12 @@ def write_vtkhdf(file: h5py.File, p: ScenePlan, tables: dict[str, pd.DataFrame])
 
 
 def _add_contacts(
-    blocks: "_Blocks", stored: h5py.Group, contacts: pd.DataFrame, spheres: pd.DataFrame, steps: np.ndarray
+    blocks: "_Blocks", stored: h5py.Group, contacts: pd.DataFrame, ends: Sequence[pd.DataFrame], steps: np.ndarray
 ) -> None:
     """A line for each contact, from the centre of the first sphere to the centre of the second or to the wall."""
-    known = spheres.set_index(["step", "id"])
-    one, other = (known.reindex(pd.MultiIndex.from_frame(contacts[["step", body]])) for body in ("i", "j"))
-    begin = one[[*"xyz"]].to_numpy()
-    length = one["radius"].to_numpy() + other["radius"].fillna(0.0).to_numpy() - contacts["overlap"].to_numpy()
+    one, other = ends
+    begin, radii = one[[*"xyz"]].to_numpy(), one["radius"] + other["radius"].replace(np.inf, 0.0)
+    length = radii.to_numpy() - contacts["overlap"].to_numpy()
     end = begin - length[:, None] * contacts[NORMAL].to_numpy()
     count = contacts.groupby("step").size().reindex(steps, fill_value=0).to_numpy()
     first, every = np.cumsum(count) - count, np.arange(2 * count.max()).reshape(-1, 2)

@@ -12,7 +12,7 @@ from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
 from . import filling, stages
-from .columns import STRAINS, body_pairs
+from .columns import STRAINS, bodies, reduced
 from .limits import dense_beds, largest_density, overlaps
 from .meshes import FloatArray, sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
@@ -101,10 +101,11 @@ def _share_above(p: ScenePlan, tables: dict[str, pd.DataFrame], limit: float) ->
     contacts = tables["contacts"]
     if contacts.empty:
         return 0.0
-    both = body_pairs(p, contacts, tables["particles"])
-    weaker = np.array(p.model.shares())[both.type_i - 1, both.type_j - 1]
-    elastic = np.sqrt(both.R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
-    strain = weaker * np.maximum(contacts["dent_radius"], elastic) / both.R_star
+    one, other = bodies(p, contacts, tables["particles"])
+    R_star = reduced(one["radius"], other["radius"])
+    weaker = np.array(p.model.shares())[one["type"].astype(int) - 1, other["type"].astype(int) - 1]
+    elastic = np.sqrt(R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
+    strain = weaker * np.maximum(contacts["dent_radius"], elastic) / R_star
     return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
 
 
