@@ -56,19 +56,20 @@ def _velocity(p: ScenePlan, row: NamedRow, rows: pd.DataFrame) -> np.ndarray:
     return speeds
 
 
-def _lost_energy(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
-    """Energy [J] of the spheres that left before each step, from their last frame: kinetic, plastic, adhesive and
-    friction."""
-    energy = kinetic(spheres) + rotation(spheres)
-    for name in ("plastic_work", "adhesive_work", "friction_work"):
-        energy = energy + spheres.get(name, 0.0)
-    last = spheres.groupby("id")["step"].max()
-    gone = last[last < steps[-1]]
-    taken = np.zeros(steps.size)
-    at_last = spheres.assign(energy=energy).sort_values("step").groupby("id")["energy"].last()
-    for sphere, step in gone.items():
-        taken[steps > step] += at_last[sphere]
-    return taken
+WORKS = {  # terms of the balance by the columns of the frames
+    "plastic": "plastic_work",
+    "adhesion": "adhesive_work",
+    "friction": "friction_work",
+    "springs": "friction_energy",
+}
+
+
+def _lost_energy(spheres: pd.DataFrame, energy: pd.Series, steps: np.ndarray) -> np.ndarray:
+    """Energy [J] of the spheres that left before each step, from their last frame."""
+    at_last = spheres.assign(energy=energy).sort_values("step").groupby("id")[["step", "energy"]].last()
+    gone = at_last[at_last["step"] < steps[-1]]
+    by_step = gone.groupby("step")["energy"].sum().reindex(steps, fill_value=0.0)
+    return np.asarray(by_step.cumsum().shift(fill_value=0.0))
 
 
 def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
@@ -81,37 +82,22 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
     balance vanishes unless contacts have rolling friction, dashpots or a friction spring: then the balance is their
     work, and `friction` is the negative balance where friction work is not computed.
     """
-    spheres, contacts = tables["particles"], tables["contacts"]
-    steps = np.sort(spheres["step"].unique())
+    spheres, contacts, rows = tables["particles"], tables["contacts"], tables["rows"]
+    own = {"kinetic": kinetic(spheres)} | ({"rotation": rotation(spheres)} if p.model.spins else {})
+    own |= {"plastic": 0.0 * spheres["mass"]} | {k: spheres[name] for k, name in WORKS.items() if name in spheres}
     gravity = spheres["mass"] * p.scene.gravity * spheres["z"]
-    by_step = spheres.assign(kinetic=kinetic(spheres), rotation=rotation(spheres), gravity=gravity)
-    sums = by_step.groupby("step")[["kinetic", "rotation", "gravity"]].sum()
-    table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
-    table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
-    if p.model.spins:
-        table["rotation"] = sums["rotation"].to_numpy()
-    table["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
-    for name, column in (("plastic", "plastic_work"), ("adhesion", "adhesive_work")):
-        if column in spheres:
-            table[name] = spheres.groupby("step")[column].sum().reindex(steps).to_numpy()
-        elif name == "plastic":
-            table[name] = 0.0
-    if "friction_work" in p.works:
-        both = spheres.groupby("step")[["friction_work", "friction_energy"]].sum().reindex(steps)
-        table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
-    rows = tables["rows"]
-    table["work"] = np.interp(steps, rows["step"], work_of_walls(p, rows))
-    table["lost_spheres_energy"] = _lost_energy(spheres, steps) if p.scene.open_boundary else 0.0
-    present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
-    start = int(np.argmax(present == present.max()))
-    of_friction = ["friction", "springs"] if "friction_work" in p.works else []
-    kinds = ["kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion", "lost_spheres_energy", *of_friction]
-    total = table.reindex(columns=kinds, fill_value=0.0).sum(axis=1) - table["work"]
-    table["balance"] = total - total.iloc[start]
-    table = table.iloc[start:].reset_index(drop=True)
-    if p.model.loses_energy and "friction_work" not in p.works:
+    terms = pd.DataFrame(own | {"gravity": gravity}).groupby(spheres["step"]).sum()
+    steps = terms.index.to_numpy()
+    terms["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0)
+    terms["lost_spheres_energy"] = _lost_energy(spheres, sum(own.values()), steps) if p.scene.open_boundary else 0.0
+    table = terms.assign(work=np.interp(steps, rows["step"], work_of_walls(p, rows)))
+    total = terms.sum(axis=1) - table["work"]
+    start = spheres.groupby("step")["id"].count().idxmax()  # the first frame with all spheres
+    table["balance"] = total - total[start]
+    if p.model.loses_energy and "friction" not in table:
         table["friction"] = -table["balance"]
-    return table
+    table.insert(0, "time", p.time_at(steps))
+    return table.loc[start:].reset_index()
 
 
 def closure(table: pd.DataFrame) -> float:
