@@ -50,26 +50,39 @@ def charts(outcome: SceneOutcome) -> list[Chart]:
 def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The measures against time."""
     found = [m for m in p.scene.measure if not isinstance(m, Histogram)]
-    curves = {m.name: curve(m, tables) for m in found}
-    constant = {name: y[0] for name, (_, y) in curves.items() if np.unique(y).size == 1}
-    shown = [m for m in found if m.name not in constant]
-    panels = [Panel(TIME, Axis(m.name, MEASURES[m.kind].unit), [Series("", *curves[m.name], 0)]) for m in shown]
-    return _against_time(p, "scene_measures", "Measures against time", panels, constant)
+    curves = {m.name: (MEASURES[m.kind].unit, *curve(m, tables)) for m in found}
+    return _against_time(p, "scene_measures", "Measures against time", curves)
+
+
+def rows(outcome: SceneOutcome) -> list[Chart]:
+    """Every column of the rows against time; measured loads, which are measures, not."""
+    table, measured = outcome.results.tables["rows"], {m.name for m in outcome.plan.scene.measure}
+    known, time = units(table), table["time"].to_numpy()
+    shown = table.drop(columns=["step", "time", *measured], errors="ignore")
+    curves = {str(name): (known.get(str(name), ""), time, shown[name].to_numpy(float)) for name in shown}
+    return _against_time(outcome.plan, "scene", "Rows against time", curves)
 
 
 def _against_time(
-    p: ScenePlan, name: str, heading: str, panels: list[Panel], constant: dict[str, float]
+    p: ScenePlan, name: str, heading: str, curves: dict[str, tuple[str, np.ndarray, np.ndarray]]
 ) -> list[Chart]:
-    """A chart of curves against time; constant ones are numbers in its text. None without a curve that changes."""
-    if not panels:
+    """A chart of (unit, times, values) by name; the three components of a load share a panel, constant curves are
+    numbers in its text. None without a curve that changes."""
+    constant = {label: y[0] for label, (_, _, y) in curves.items() if np.unique(y).size == 1}
+    found: dict[str, Panel] = {}
+    for label, (unit, time, y) in curves.items():
+        if label not in constant:
+            load, component = (label[:-2], label[-1]) if label.endswith(LOADS) else (label, "")
+            panel = found.setdefault(load, Panel(TIME, Axis(load, unit), []))
+            panel.series.append(Series(component, time, y, "xyz".find(component)))
+    if not found:
         return []
-    panels = [_with_phases(p, panel) for panel in panels]
-    alt = f"Against time: {', '.join(panel.y.label for panel in panels)}."
+    alt = f"Against time: {', '.join(found)}."
     if constant:
         alt += f" Constant: {', '.join(f'{label} = {value:.5g}' for label, value in constant.items())}."
     if len(p.phases) > 1:
         alt += f" Dotted lines: ends of the phases {', '.join(phase.name for phase in p.phases[:-1])}."
-    columns = min(COLUMNS, len(panels))
+    panels, columns = [_with_phases(p, panel) for panel in found.values()], min(COLUMNS, len(found))
     return [Chart(name, p.case.case.title, alt, panels, columns=columns, heading=heading)]
 
 
@@ -82,27 +95,6 @@ def _with_phases(p: ScenePlan, panel: Panel) -> Panel:
     ends = p.phase_table["end_time"][:-1]
     lines = [Series("", [end, end], [values.min(), values.max()], GREY, "dot") for end in ends]
     return replace(panel, series=[*panel.series, *lines])
-
-
-def rows(outcome: SceneOutcome) -> list[Chart]:
-    """Every column of the rows against time; measured loads, which the key figure has, and constant columns not."""
-    table, known = outcome.results.tables["rows"], units(outcome.results.tables["rows"])
-    measured = {m.name for m in outcome.plan.scene.measure}
-    shown = [str(name) for name in table if name not in {"step", "time"} | measured]
-    constant = {name: table[name].iloc[0] for name in shown if table[name].nunique() < 2}
-    curves: dict[str, list[str]] = {}  # by the label of their panel: the three components of a load share one
-    for name in shown:
-        if name not in constant:
-            curves.setdefault(name[:-2] if name.endswith(LOADS) else name, []).append(name)
-    panels = []
-    for label, names in curves.items():
-        series = []
-        for name in names:
-            component = name.removeprefix(label).removeprefix("_")  # of a load: its axis is name and colour
-            colour = "xyz".index(component) if component else 0
-            series.append(Series(component, table["time"].to_numpy(), table[name].to_numpy(float), colour))
-        panels.append(Panel(TIME, Axis(label, known.get(names[0], "")), series))
-    return _against_time(outcome.plan, "scene", "Rows against time", panels, constant)
 
 
 def histograms(outcome: SceneOutcome) -> list[Chart]:
