@@ -10,14 +10,14 @@ import pandas as pd
 
 from ..base.files import claim
 from ..base.terminal import Shown, frame_table, heads, warned
-from ..case.outputs import MassFlow, ReboundSpeed, Unloading
+from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from ..report.page import Picture
 from . import checks, pictures, stages
-from .columns import LOADS, last_frame, units
+from .columns import LOADS, last_frame, place, units
 from .measures import curve, values_of
 from .plan import ScenePlan
 from .run import SceneOutcome
@@ -163,18 +163,6 @@ def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(TIME, Axis("mass below the outlet", "kg"), [Series("scene", time, out, 0), line])]
 
 
-def _unloading(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """Force over displacement, loading and unloading."""
-    rows, (press,) = tables["rows"], [x for x in p.scene.check if isinstance(x, Unloading)]
-    row = next(row for row in p.scene.row if row.name == press.position)
-    begin = p.triangles[row.wall][0, 0, row.axis]
-    way, force = (begin - rows[press.position]).abs().to_numpy(), rows[press.force].to_numpy()
-    loading = (rows["step"] <= p.phases[-2].end).to_numpy()
-    parts = (("loading", loading), ("unloading", ~loading))
-    series = [Series(name, way[part], force[part], colour) for colour, (name, part) in enumerate(parts)]
-    return [Panel(Axis(f"displacement of the {row.wall}", "m"), Axis(press.force, "N"), series)]
-
-
 def _pressure(p: ScenePlan, tables: Tables) -> np.ndarray:
     return np.asarray(tables["rows"][p.scene.stages.pressure])  # type: ignore[union-attr]
 
@@ -265,32 +253,32 @@ def _bed(p: ScenePlan, tables: Tables) -> list[Panel]:
 def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Force over displacement of each wall that moves only with constant velocities and whose force is in the rows:
     a curve for each of its phases, both along the first of its motions."""
-    rows, phases = tables["rows"], p.phase_table
+    rows, ends = tables["rows"], [0, *(phase.end for phase in p.phases)]
     step = rows["step"].to_numpy()
-    middle = p.time_at(step - 0.5 * p.every)
-    found = []
-    for name in p.loads:
+    middle, found = p.time_at(step - 0.5 * p.every), []
+    named = {row.wall: row for row in p.scene.row if row.force and not row.area}
+    for name in dict.fromkeys([*p.loads, *named]):
         moves = [phase.moves.get(name) for phase in p.phases]
-        linear = [np.array(move.velocity) if isinstance(move, LinearMove) else np.zeros(3) for move in moves]
-        moving = [velocity for velocity in linear if velocity.any()]
+        moving = [np.array(move.velocity) for move in moves if isinstance(move, LinearMove) and any(move.velocity)]
         if not moving or any(move and not isinstance(move, LinearMove) for move in moves):
             continue
         along = moving[0] / np.linalg.norm(moving[0])
-        force = -rows[[f"{name}_force_{axis}" for axis in "xyz"]].to_numpy() @ along
-        way = np.zeros(len(rows))
+        if name in p.loads:
+            force = -rows[[f"{name}_force_{axis}" for axis in "xyz"]].to_numpy() @ along
+        else:
+            force = -named[name].sign * rows[named[name].name].to_numpy() * along[named[name].axis]
+        start = p.triangles[name][0, 0]
+        way = sum(along[k] * (place(p, name, k, middle) - start[k]) for k in range(3))
         series: list[Series] = []
-        for velocity, phase in zip(linear, phases.to_dict("records"), strict=True):
-            way += along @ velocity * (np.clip(middle, phase["begin_time"], phase["end_time"]) - phase["begin_time"])
-        for velocity, phase in zip(linear, phases.to_dict("records"), strict=True):
-            during = (step > phase["begin"]) & (step <= phase["end"])
-            if velocity.any():
-                series.append(Series(phase["phase"], way[during], force[during], len(series) % len(PALETTE)))
+        for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True):
+            if any(phase.velocity(name)):
+                during = (step > begin) & (step <= end)
+                series.append(Series(phase.name, way[during], force[during], len(series) % len(PALETTE)))
         found.append(Panel(Axis(f"displacement of {name}", "m"), Axis(f"force on {name}", "N"), series))
     return found
 
 
 OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
-    "unloading": _unloading,
     "densification": _densification,
     "heckel": _heckel,
     "springback": _springback,
