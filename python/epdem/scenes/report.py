@@ -49,7 +49,7 @@ def charts(outcome: SceneOutcome) -> list[Chart]:
 
 def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The measures against time."""
-    found = [m for m in p.scene.measure if not isinstance(m, Histogram)]
+    found = [m for m in p.scene.measure if not isinstance(m, Histogram) and m.name not in p.scene.key_figure]
     curves = {m.name: (MEASURES[m.kind].unit, *curve(m, tables)) for m in found}
     return _against_time(p, "scene_measures", "Measures against time", curves)
 
@@ -213,16 +213,10 @@ def _springback(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 
 def _column(p: ScenePlan, tables: Tables, name: str) -> list[Panel]:
-    """A column of the rows against time."""
-    rows, unit = tables["rows"], next(row.unit for row in p.scene.row if row.name == name)
-    return [Panel(TIME, Axis(name, unit), [Series("", rows["time"].to_numpy(), rows[name].to_numpy(), 0)])]
-
-
-def _center_of_mass(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """The bed's centre of mass across, which a turn carries up the wall."""
-    sums = tables["particles"].eval("mx = mass * x").groupby("step")[["mx", "mass"]].sum()
-    place = (sums["mx"] / sums["mass"]).to_numpy()
-    return [Panel(TIME, Axis("x of the centre of mass", "m"), [Series("", p.time_at(sums.index.to_numpy()), place, 0)])]
+    """A column of the rows or of the measures against time; kinetic energy, which falls by powers of ten, as such."""
+    table = tables["measures" if name in tables.get("measures", ()) else "rows"]
+    axis = Axis(name, units(table).get(name, ""), log=name == "kinetic_energy")
+    return [Panel(TIME, axis, [Series("", table["time"].to_numpy(), table[name].to_numpy(float), 0)])]
 
 
 def _rebound_speed(p: ScenePlan, tables: Tables) -> list[Panel]:
@@ -236,18 +230,6 @@ def _rebound_speed(p: ScenePlan, tables: Tables) -> list[Panel]:
         Series("one impact, theory", [expected] * 2, [0.0, float(max(number.max(), 1))], INK, "dash"),
     ]
     return [Panel(Axis("rebound speed", "m/s"), Axis("number"), series)]
-
-
-def _bed(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """Height and kinetic energy against time."""
-    rows, heights = tables["rows"], tables["particles"].groupby("step")["z"].quantile(0.95)
-    moving = rows[rows["kinetic_energy"] > 0]
-    energy = Series("", moving["time"].to_numpy(), moving["kinetic_energy"].to_numpy(), 1)
-    height = Series("", p.time_at(heights.index.to_numpy()), heights.to_numpy(), 0)
-    return [
-        Panel(TIME, Axis("height of 95 %", "m"), [height]),
-        Panel(TIME, Axis("kinetic_energy", "J", log=True), [energy]),
-    ]
 
 
 def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
@@ -286,8 +268,6 @@ OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
 OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
     "mass_flow": _mass_flow,
     "rebound_speed": _rebound_speed,
-    "bed": _bed,
-    "center_of_mass": _center_of_mass,
 }
 
 

@@ -92,7 +92,8 @@ def unit(name: str, case: Mapping[str, Any]) -> str | None:
     if name in CHECKS:
         return CHECKS[name].unit or None
     column = name.rpartition("_")[0]
-    kinds = {m["name"]: MEASURES[m["kind"]] for m in case.get("scene", {}).get("measure", [])}
-    rows = {row.name: row for row in parse(dict(case)).parts.row}
+    parts = parse(dict(case)).parts
+    kinds = {m.name: MEASURES[m.kind] for m in parts.measure}
+    rows = {row.name: row for row in parts.row}
     known = kinds.get(column) or COLUMNS.get(column) or rows.get(column)
     return known.unit or None if known else unit_of_load(column)
