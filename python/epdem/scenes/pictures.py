@@ -185,10 +185,10 @@ def before(p: ScenePlan, path: Path) -> int:
 
 
 def _first(p: ScenePlan) -> FloatArray:
-    """(n, 5) place, radius, type of the spheres that can be placed before a run, and of single ones that come later."""
+    """The spheres that can be placed before a run, and single ones that come later, in the form of `placement`."""
     placed = p.count <= MOST_PLACED and bool(p.insertions)
     alone = [b.sphere for b in p.scene.later] + ([] if placed else [*p.scene.table])
-    rows = np.array([(*s.place, s.radius, p.model.type_of(s.material)) for s in alone], float).reshape(-1, 5)
+    rows = np.array([placement.of_sphere(p, s) for s in alone]).reshape(-1, 12)
     return np.concatenate([placement.spheres(p), rows]) if placed else rows
 
 

@@ -3,12 +3,11 @@
 
 import math
 import random
-from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
 
-from ..case.parts import Region
+from ..case.parts import Region, Sphere
 from ..case.scene import SceneCase
 from ..case.walls import Upright
 from ..errors import CaseError
@@ -40,8 +39,8 @@ def _at_once(p: ScenePlan, phase: str) -> list[Insertion]:
 
 
 def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
-    """(n, 5) x, y, z, radius [m], type of all spheres that come at the begin of a phase: the table, then each fill
-    but streams.
+    """(n, 12) x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of all spheres that come at the begin
+    of a phase: the table, then each fill but streams.
 
     phase: its name, "": the first one, with which the table comes; bodies of later phases are not in here, but their
     places are free. Random sequential placement, every sphere wholly in the region of its fill. The same case has the
@@ -53,11 +52,11 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
     cells: dict[tuple[int, ...], list[tuple[FloatArray, float]]] = {}
     edge = 2.0 * p.largest  # no sphere touches one beyond the next cell
 
-    def put(place: tuple[float, ...], radius: float, kind: int) -> None:
+    def put(row: tuple[float, ...]) -> None:
         for shift in p.scene.images:
-            image = np.add(place, shift)
-            cells.setdefault(tuple(math.floor(x / edge) for x in image), []).append((image, radius))
-        placed.append((*place, radius, kind))
+            image = np.add(row[:3], shift)
+            cells.setdefault(tuple(math.floor(x / edge) for x in image), []).append((image, row[3]))
+        placed.append(row)
 
     def is_free(place: tuple[float, ...], radius: float) -> bool:
         cell = tuple(math.floor(x / edge) for x in place)
@@ -68,40 +67,29 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
         )
         return all(math.dist(place, image) > radius + own for image, own in near)
 
-    bodies = [b.sphere for b in p.scene.later if b.phase == phase]
-    for s in bodies:
-        put(s.place, s.radius, 0)
-    for s in p.scene.table if phase in ("", first) else ():
-        put(s.place, s.radius, p.model.type_of(s.material))
+    bodies = later_bodies(p, phase)
+    for row in [*bodies, *(of_sphere(p, s) for s in p.scene.table if phase in ("", first))]:
+        put(row)
     for fill in _at_once(p, phase or first):
         for radius, kind in sizes(p.case, p.model, fill, rng):
             for _ in range(ATTEMPTS):
                 place = _somewhere(fill.region, radius, rng)
                 if place is not None and is_free(place, radius):
-                    put(place, radius, kind)
+                    put((*place, radius, kind, *fill.velocity, 0.0, 0.0, 0.0, 0.0))
                     break
             else:
                 raise CaseError(
                     f"{fill.key} = {fill.count}: no room is left for sphere {len(placed) - len(bodies) + 1} "
                     f"without overlap after {ATTEMPTS} attempts; enlarge the box"
                 )
-    return np.array(placed[len(bodies) :]).reshape(-1, 5)
+    return np.array(placed[len(bodies) :]).reshape(-1, 12)
 
 
-def later_bodies(p: ScenePlan, phase: str) -> Iterator[tuple[float, ...]]:
-    """The single spheres that come with a phase but the first, in the form of `moving_spheres`."""
-    for s in (b.sphere for b in p.scene.later if b.phase == phase):
-        yield (*s.place, s.radius, float(p.model.type_of(s.material)), *s.velocity, *s.spin, 0.0)
+def later_bodies(p: ScenePlan, phase: str) -> list[tuple[float, ...]]:
+    """The single spheres that come with a phase but the first, in the form of `spheres`."""
+    return [of_sphere(p, b.sphere) for b in p.scene.later if b.phase == phase]
 
 
-def moving_spheres(p: ScenePlan, phase: str = "") -> Iterator[tuple[float, ...]]:
-    """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each of `spheres`."""
-    table = p.scene.table if phase in ("", p.phases[0].name) else []
-    fills = [f for f in _at_once(p, phase or p.phases[0].name) for _ in range(f.count)]
-    still = (0.0, 0.0, 0.0)
-    for n, row in enumerate(spheres(p, phase).tolist()):
-        if n < len(table):
-            s = table[n]
-            yield (*row, *s.velocity, *s.spin, float(s.frozen))
-        else:
-            yield (*row, *fills[n - len(table)].velocity, *still, 0.0)
+def of_sphere(p: ScenePlan, s: Sphere) -> tuple[float, ...]:
+    """A single sphere in the form of `spheres`."""
+    return (*s.place, s.radius, float(p.model.type_of(s.material)), *s.velocity, *s.spin, float(s.frozen))

@@ -179,7 +179,7 @@ def _fills(p: ScenePlan, phase: str) -> list[tuple[str, str, str]]:
 
 
 def _data(p: ScenePlan, phase: str) -> str:
-    rows = [*placement.moving_spheres(p, phase), *placement.later_bodies(p, phase)]
+    rows = [*placement.spheres(p, phase).tolist(), *placement.later_bodies(p, phase)]
     density = [0.0, *(t.density for t in p.model.types)]
     spheres = [(kind, 2 * r, density[int(kind)], x, y, z, *motion) for x, y, z, r, kind, *motion, _ in rows]
     return data_text(f"spheres of {p.case.name}", len(p.model.types), p.box, spheres)

@@ -178,5 +178,5 @@ def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
     deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p))}
     if _placed(p):
-        deck_files[SPHERES] = table_text(HEAD, [*placement.moving_spheres(p)])
+        deck_files[SPHERES] = table_text(HEAD, placement.spheres(p).tolist())
     return deck_files | files_of_parts(p)

@@ -171,7 +171,7 @@ def files(p: ScenePlan) -> dict[str, str]:
         texts[wall.file] = table_text(head, rows)
     for phase in p.phases:
         if name := bodies_file(p, phase.name):
-            texts[name] = table_text(HEAD, [*placement.later_bodies(p, phase.name)])
+            texts[name] = table_text(HEAD, placement.later_bodies(p, phase.name))
     for n, f in _late(p):
         rng = random.Random(p.case.numerics.seed + n)
         sizes = placement.sizes(p.case, p.model, f, rng)
