@@ -22,16 +22,15 @@ from hypothesis import strategies as st
 from other_routes import assert_forces, assert_frames, porosity
 from pydantic import BaseModel
 from scene_runs import restart_steps, run, write_case, write_deck
+from stored_decks import checked_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import SceneCase, parse
-from epdem.engines import scene_engine
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as liggghts_tables
 from epdem.errors import CaseError
 from epdem.laws.strengths import find_law
 from epdem.scenes import filling, measures
-from epdem.scenes.engine import files as deck_files
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
@@ -156,7 +155,7 @@ def planned(chosen, folder):
     """The plan and the files for LIGGGHTS, as `run` makes them."""
     p = plan(parse(case_of(chosen), folder / "case.toml"))
     measures.refuse_measures(p)
-    return p, deck_files(scene_engine("liggghts"), p)
+    return p, checked_deck(p)
 
 
 @pytest.fixture(scope="module")
@@ -214,7 +213,7 @@ def test_the_plan_and_the_deck_have_what_the_case_requests(chosen, folder):
         assert sum(f.count for f in p.insertions) == 60
         mass = sum(got.values())
     off = [m for m, share in parts.items() if abs(got[m] - share * mass) > 0.0101 * mass]
-    assert bool(off) == any("whole spheres of" in said for said in filling.warnings(p.case, p.insertions))
+    assert bool(off) == any("whole spheres of" in said for said in filling.warnings(p.case))
     text = decks["in.scene"] + decks["setup.in"]
     inserted = re.findall(r"nparticles (\d+)|particles_in_region (\d+)", text)
     alone = len(p.scene.table) + len(p.scene.later)
@@ -263,7 +262,7 @@ def test_other_units_make_the_same_deck(chosen, folder):
     data = case_of(chosen)
     other = in_other_units(data)
     assert other["materials"]["glass"] != data["materials"]["glass"]
-    decks = [deck_files(scene_engine("liggghts"), plan(parse(x, folder / "case.toml"))) for x in (data, other)]
+    decks = [checked_deck(plan(parse(x, folder / "case.toml"))) for x in (data, other)]
     (text, values), (again, found) = map(numbers_in, decks)
     assert again == text
     assert np.allclose(found, values, rtol=1e-9, atol=1e-300)

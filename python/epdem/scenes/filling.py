@@ -23,8 +23,8 @@ LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of it
 class Insertion:
     """`count` spheres of `particles` put into a region in a phase: at once, or `rate` per second every `period` [s].
 
-    key, mixture: places of the number and of the particles in the case. exact: `count` is the number of spheres beside
-    those that are in the region before.
+    key: place of the number in the case. exact: `count` is the number of spheres beside those that are in the region
+    before.
     """
 
     particles: list[Particles]
@@ -36,16 +36,11 @@ class Insertion:
     rate: float | None = None
     period: float = 0.0
     exact: bool = False
-    mixture: str = ""
 
 
 def size_weights(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
     """(material, radius [m], weight) of each size: spheres drawn with these weights have the shares of the mass."""
-    return [
-        (p.material, radius, share / (case.materials[p.material].density * radius**3))
-        for p in parts
-        for radius, share in p.sizes()
-    ]
+    return [(material, radius, share / mass) for _, material, radius, mass, share in _classes(case, parts)]
 
 
 def mean_volume(case: SceneCase, fill: Insertion) -> float:
@@ -130,26 +125,18 @@ def count_sizes(case: SceneCase, f: Fill) -> list[Size]:
     return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _round_to_sum(requested), strict=True)]
 
 
-def _random(case: SceneCase, fill: Insertion) -> list[Size]:
-    """The sizes of a fill whose spheres are drawn at random, with the mean number of each."""
-    weights = [weight for *_, weight in size_weights(case, fill.particles)]
-    classes = _classes(case, fill.particles)
-    return [Size(*c[:4], fill.count * w / sum(weights)) for c, w in zip(classes, weights, strict=True)]
-
-
-def _insertion(case: SceneCase, scene: Parts, f: Fill, key: str, count: int) -> Insertion:
+def _insertion(scene: Parts, f: Fill, key: str, count: int) -> Insertion:
     vx, vy, vz = f.velocity
     phase = next(p for p in scene.phase if f.phase in (None, p.name))
-    mixture = scene.place(f"scene.fill.{f.name}.particles")
     if f.rate is None:
-        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), mixture=mixture)
+        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz))
     down, depth = -vz, f.region.z[1] - f.region.z[0]
     if not (down > 0 or scene.gravity):
         raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")
     period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
     if count / f.rate > phase.duration:
         raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
-    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period, mixture=mixture)
+    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period)
 
 
 def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
@@ -163,7 +150,7 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
         sizes = sorted((size for size in count_sizes(case, f) if size.placed), key=lambda size: -size.radius)
         if not sizes:
             raise CaseError(f"{key}: not one sphere; give more, or smaller ones")
-        all_sizes = _insertion(case, scene, f, key, sum(size.placed or 0 for size in sizes))
+        all_sizes = _insertion(scene, f, key, sum(size.placed or 0 for size in sizes))
         if f.rate is not None or (len(sizes) == 1 and not f.exact):
             found.append(all_sizes)
             continue
@@ -174,28 +161,23 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     return tuple(found)
 
 
-def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size], float]]:
+def _fills(case: SceneCase) -> Iterator[tuple[str, list[Size], float]]:
     """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
     that the mass is the mass of the placed spheres."""
-    of_case = {case.parts.place(f"scene.fill.{f.name}"): f for f in case.parts.random_fills}
-    for key, group in groupby(fills, key=lambda fill: fill.key):
-        first = next(group)
-        if first.exact:
-            f = of_case[key]
-            sizes = count_sizes(case, f)
-            mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
-            yield first.mixture, sizes, mass
-        else:
-            yield first.mixture, _random(case, first), 0.0
+    for f in case.parts.random_fills:
+        sizes = count_sizes(case, f)
+        mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
+        drawn = sizes if f.rate is None else [size._replace(placed=None) for size in sizes]
+        yield case.parts.place(f"scene.fill.{f.name}.particles"), drawn, mass
 
 
 def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
     return ((n, list(group)) for n, group in groupby(sizes, key=lambda size: size.component))
 
 
-def refuse_missing(case: SceneCase, fills: Iterable[Insertion]) -> None:
+def refuse_missing(case: SceneCase) -> None:
     """Raise CaseError for a component without a sphere."""
-    for place, sizes, _ in _fills(case, fills):
+    for place, sizes, _ in _fills(case):
         for n, own in _by_component(sizes):
             if all(size.missing for size in own):
                 total = sum(size.requested for size in own)
@@ -205,10 +187,10 @@ def refuse_missing(case: SceneCase, fills: Iterable[Insertion]) -> None:
                 )
 
 
-def warnings(case: SceneCase, fills: Iterable[Insertion]) -> list[str]:
+def warnings(case: SceneCase) -> list[str]:
     """A sentence for each size without spheres, and for each component whose mass differs from the requested one."""
     found = []
-    for place, sizes, whole in _fills(case, fills):
+    for place, sizes, whole in _fills(case):
         ideal = sum(size.mass * size.requested for size in sizes)
         for n, own in _by_component(sizes):
             found += [

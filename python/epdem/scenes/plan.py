@@ -399,7 +399,7 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)
-    refuse_missing(case, filled)
+    refuse_missing(case)
     beds = tuple(pressed_beds(case, scene, filled))
     refuse_below_solid(beds)
     dt = time_step(case, largest_density(scene, beds))

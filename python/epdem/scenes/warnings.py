@@ -36,7 +36,7 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    found = _law(p) + _hard_walls(p) + filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
+    found = _law(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
     return found + _time_steps(p) + _durations(p) + _overlaps(p) + _walls(p)
 
 
