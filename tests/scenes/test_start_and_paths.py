@@ -16,7 +16,7 @@ from epdem.case.scene import parse
 from epdem.case.walls import LinearMove, RotateMove, VibrateMove
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.limits import overlaps
-from epdem.scenes.meshes import at_end, path
+from epdem.scenes.meshes import SAMPLES, at_end, path
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 
@@ -139,10 +139,10 @@ def test_the_path_of_a_wall_is_that_of_its_points_at_many_times(move, seconds):
             angle = move.rate * t
             matrix = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
             way.append((points - np.array(move.origin)) @ matrix.T + np.array(move.origin))
-    found = path(move, points, seconds)
-    assert found.low == pytest.approx(np.min(way, axis=0), abs=1e-3)
-    assert found.high == pytest.approx(np.max(way, axis=0), abs=1e-3)
-    assert found.end == pytest.approx(way[-1], abs=1e-9)
+    found = path(move, points, seconds, SAMPLES)
+    assert found.min(axis=0) == pytest.approx(np.min(way, axis=0), abs=1e-3)
+    assert found.max(axis=0) == pytest.approx(np.max(way, axis=0), abs=1e-3)
+    assert found[-1] == path(move, points, seconds)[0] == pytest.approx(way[-1], abs=1e-9)
 
 
 VIBRATE = {"kind": "vibrate", "frequency": "100 Hz"}

@@ -6,7 +6,6 @@ Arrays of triangles have the shape (n, 3 corners, 3 coordinates), metres."""
 import io
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
 
@@ -33,6 +32,7 @@ from ..case.walls import (
 from ..errors import CaseError
 
 FloatArray = npt.NDArray[np.float64]
+SAMPLES = 129  # of a turn of a wall: its extreme places within 3e-4 of the radius
 FACETS = 48  # around a circle: the wall is at most 0.2 % of the radius off it
 
 
@@ -254,42 +254,26 @@ def surface_rotation(w: MeshWall) -> RotateMove | None:
     )
 
 
-@dataclass(frozen=True)
-class WallPath:
-    """Points that move for some time: their least and largest coordinates on the way, and where they are at its end."""
-
-    low: FloatArray
-    high: FloatArray
-    end: FloatArray
-
-
-def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, seconds: float) -> WallPath:
-    """The path of `points`, shape (n, 3), from the begin of a motion on [m]."""
+def path(
+    move: LinearMove | RotateMove | VibrateMove, points: FloatArray, seconds: float, samples: int = 0
+) -> FloatArray:
+    """Where `points`, shape (n, 3) [m], are on their way, shape (samples + 1, n, 3): at even times of the first turn of
+    a motion, and at its end."""
+    rate = move.rate if isinstance(move, RotateMove) else move.omega if isinstance(move, VibrateMove) else 0.0
+    once = min(seconds, 2 * math.pi / abs(rate)) if rate else seconds
+    time: FloatArray = np.append(np.linspace(0.0, once, samples), seconds).reshape(-1, 1, 1)
     if isinstance(move, LinearMove):
-        end = points + seconds * np.array(move.velocity)
-        return WallPath(np.minimum(points, end), np.maximum(points, end), end)
+        return np.asarray(points + time * np.array(move.velocity))
     if isinstance(move, VibrateMove):
-        angle, amplitude = move.omega * seconds, np.array(move.amplitude)
-        sines = [0.0, math.sin(angle)] + [1.0] * (angle >= math.pi / 2) + [-1.0] * (angle >= 3 * math.pi / 2)
-        places = np.stack([points + sine * amplitude for sine in sines])
-        return WallPath(places.min(axis=0), places.max(axis=0), places[1])
-    axis, angle = np.array(move.axis) * math.copysign(1.0, move.rate), abs(move.rate) * seconds
-    arm = points - np.array(move.origin)
-    center = np.array(move.origin) + (arm @ axis)[:, None] * axis
-    arm = points - center
-    side = np.cross(axis, arm)
-    turned = center + arm * math.cos(angle) + side * math.sin(angle)
-    first = np.arctan2(side, arm) % math.pi  # where a coordinate is extreme, for the first time
-    extremes = [points, turned]
-    for extreme in (first, first + math.pi):
-        there = center + arm * np.cos(extreme) + side * np.sin(extreme)
-        extremes.append(np.where(extreme <= angle, there, points))
-    return WallPath(np.min(extremes, axis=0), np.max(extremes, axis=0), turned)
+        return np.asarray(points + np.sin(rate * time) * np.array(move.amplitude))
+    axis, arm = np.array(move.axis), points - np.array(move.origin)
+    across = arm - (arm @ axis)[:, None] * axis
+    return np.asarray(points - across + across * np.cos(rate * time) + np.cross(axis, arm) * np.sin(rate * time))
 
 
 def paths(
-    phases: Iterable[tuple[Mapping[str, Move], float]], points: Mapping[str, FloatArray]
-) -> Iterator[tuple[int, str, WallPath]]:
+    phases: Iterable[tuple[Mapping[str, Move], float]], points: Mapping[str, FloatArray], samples: int = 0
+) -> Iterator[tuple[int, str, FloatArray]]:
     """(number of the phase, wall, path) of every wall that moves in `phases`, each with its motions and duration [s].
 
     A wall that a force drives is left out from then on. points: of each wall at the start, shape (n, 3) [m].
@@ -304,8 +288,8 @@ def paths(
                 continue
             _, begin, seconds = moving.get(name, (move, here[name], 0.0))
             moving[name] = (move, begin, seconds + duration)
-            way = path(move, begin, seconds + duration)
-            here[name] = way.end
+            way = path(move, begin, seconds + duration, samples)
+            here[name] = way[-1]
             yield number, name, way
 
 
@@ -316,7 +300,7 @@ def at_end(
     pressed = {name for moves, _ in phases for name, move in moves.items() if isinstance(move, PressMove)}
     found = {name: corners for name, corners in triangles.items() if name not in pressed}
     for _, name, way in paths(phases, {name: corners.reshape(-1, 3) for name, corners in found.items()}):
-        found[name] = way.end.reshape(-1, 3, 3)
+        found[name] = way[-1].reshape(-1, 3, 3)
     return found
 
 
@@ -328,9 +312,9 @@ def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
     room = scene.room.limits
     phases = [*takewhile(lambda phase: not phase.condition, scene.phase)]
     centers = {name: corners.mean(axis=1) for name, corners in triangles.items()}
-    for number, name, way in paths([(phase.moves, phase.seconds) for phase in phases], centers):
+    for number, name, way in paths([(phase.moves, phase.seconds) for phase in phases], centers, SAMPLES):
         for k, axis in enumerate("xyz"):
-            low, high = float(way.low[:, k].min()), float(way.high[:, k].max())
+            low, high = float(way[..., k].min()), float(way[..., k].max())
             if low < room[2 * k] or high > room[2 * k + 1]:
                 reached = high if high > room[2 * k + 1] else low
                 raise CaseError(
