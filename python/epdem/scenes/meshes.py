@@ -5,7 +5,7 @@ Arrays of triangles have the shape (n, 3 corners, 3 coordinates), metres."""
 
 import io
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
 
@@ -86,21 +86,20 @@ def rectangle(axis: int, center: npt.ArrayLike, size: tuple[float, float]) -> Fl
     return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
 
 
-def box(limits: tuple[float, ...], faces: set[str]) -> FloatArray:
+def box(limits: Sequence[float], *, without: Collection[str] = ()) -> FloatArray:
     """The faces ("-x", "+z") of a room xlo xhi ylo yhi zlo zhi [m]."""
     low, high = np.array(limits[0::2]), np.array(limits[1::2])
     parts = []
-    for face in sorted(faces):
-        axis = "xyz".index(face[1])
-        center = 0.5 * (low + high)
+    for face in sorted({sign + axis for sign in "-+" for axis in "xyz"} - {*without}):
+        axis, center = "xyz".index(face[1]), 0.5 * (low + high)
         center[axis] = (low if face[0] == "-" else high)[axis]
-        others = [k for k in range(3) if k != axis]
-        parts.append(rectangle(axis, center, (float((high - low)[others[0]]), float((high - low)[others[1]]))))
+        first, second = np.delete(high - low, axis)
+        parts.append(rectangle(axis, center, (first, second)))
     return np.concatenate(parts)
 
 
 SMALLEST_ANGLE = math.radians(0.52)  # of a triangle: LIGGGHTS refuses sharper ones
-MERGED = 1e-9  # of the size of a mesh: corners closer than this are one
+MERGED = 9  # digits of the size of a mesh within which corners are one
 
 
 def _read(path: Path, place: str) -> FloatArray:
@@ -130,21 +129,11 @@ def _at(point: FloatArray) -> str:
     return "(" + ", ".join(f"{x:.4g}" for x in point) + ") m"
 
 
-def _edges(triangles: FloatArray) -> tuple[np.ndarray, np.ndarray]:
-    """(numbers of the two corners of each directed edge, shape (3 n, 2); places of the corners)."""
-    size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
-    keys = np.round(triangles.reshape(-1, 3) / (MERGED * size)).astype(np.int64)
-    _, first, numbers = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    faces = numbers.reshape(-1, 3)
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    return edges, triangles.reshape(-1, 3)[first]
-
-
 def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
     """Raise CaseError for triangles that no engine takes, with their number and the place of the first."""
-    from trimesh.triangles import angles  # 0 where two corners are one
+    import trimesh
 
-    sharpest = angles(triangles).min(axis=1)  # type: ignore[no-untyped-call]
+    sharpest = trimesh.triangles.angles(triangles).min(axis=1)  # type: ignore[no-untyped-call]  # 0 where two corners are one
     sharp = np.flatnonzero(sharpest < SMALLEST_ANGLE)
     if sharp.size:
         where = _at(triangles[sharp[0]].mean(axis=0))
@@ -152,7 +141,10 @@ def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
             f"{place}: {sharp.size} degenerate triangles (an angle below {math.degrees(SMALLEST_ANGLE):.2f} deg), the "
             f"first is number {sharp[0] + 1} at {where}; repair the mesh"
         )
-    edges, corners = _edges(triangles)
+    size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(triangles / size), process=False)  # type: ignore[no-untyped-call]
+    mesh.merge_vertices(digits_vertex=MERGED)
+    edges, corners = mesh.edges, size * mesh.vertices
     undirected, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     _, repeated = np.unique(edges, axis=0, return_counts=True)
 
@@ -208,8 +200,7 @@ def _triangles(w: MeshWall, room: Limits, largest: float) -> FloatArray:
             first, second = w.size
             return rectangle("xyz".index(w.axis), np.array(w.center), (first, second))
         case BoxWall():
-            faces = {sign + axis for sign in "-+" for axis in "xyz"} - set(w.open)
-            return box((*w.x, *w.y, *w.z), faces)
+            return box((*w.x, *w.y, *w.z), without=w.open)
         case CylinderWall() | ConeWall():
             closed = ("from" in w.ends, "to" in w.ends)
             upright = tube(w.diameters_of_ends(), w.start, w.to, closed=closed)
@@ -233,9 +224,9 @@ def triangles(scene: Parts) -> dict[str, FloatArray]:
 def sheet(plane: PlaneWall, room: Limits) -> FloatArray:
     """A plane as two triangles as large as the room."""
     low, high, axis = np.array(room[0::2]), np.array(room[1::2]), "xyz".index(plane.axis)
-    center, size = (low + high) / 2, np.delete(high - low, axis)
-    center[axis] = plane.at
-    return rectangle(axis, center, (size[0], size[1]))
+    low[axis] = high[axis] = plane.at
+    first, second = np.delete(high - low, axis)
+    return rectangle(axis, (low + high) / 2, (first, second))
 
 
 def spans(w: PlateWall, axis: str, box: Limits) -> bool:

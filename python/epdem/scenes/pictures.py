@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
 
-from collections.abc import Sequence
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +13,7 @@ from ..errors import CaseError
 from . import placement
 from .checks import kinetic
 from .columns import columns_of_frames, last_frame, units
-from .meshes import FloatArray, at_end, box, tube
+from .meshes import FloatArray, at_end, box, sheet, tube
 from .plan import Phase, ScenePlan
 
 AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
@@ -69,11 +67,6 @@ def refuse_color(p: ScenePlan) -> None:
         raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
 
 
-def _corners(limits: Sequence[float]) -> FloatArray:
-    """The eight corners of a room xlo xhi ylo yhi zlo zhi [m], shape (8, 3)."""
-    return np.array([*product(limits[0:2], limits[2:4], limits[4:6])])
-
-
 def _draw_walls(axis: Any, p: ScenePlan, walls: dict[str, FloatArray], phase: Phase, *, front: bool) -> None:
     """The triangles of `walls`, shape (n, 3 corners, 3); planes of a phase as their outline in the room."""
     from matplotlib.collections import PolyCollection
@@ -85,15 +78,9 @@ def _draw_walls(axis: Any, p: ScenePlan, walls: dict[str, FloatArray], phase: Ph
         axis.add_collection(PolyCollection([*outline], facecolor=face, edgecolor=edge, lw=0.3))
     if front:
         return
-    limits = p.box
     for w in (*p.scene.planes, *(g for g in p.scene.gates if g.name in phase.gates)):
-        flat = [*limits]
-        axis_number = "xyz".index(w.axis)
-        flat[2 * axis_number] = flat[2 * axis_number + 1] = w.at
-        square = np.unique(_corners(flat), axis=0)
-        if len(square) == 4:
-            outline = square[[0, 1, 3, 2]] @ plane.T
-            axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
+        outline = sheet(w, p.box).reshape(-1, 3)[[0, 1, 2, 5]] @ plane.T
+        axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
 
 
 def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, color: FloatArray) -> None:
@@ -170,7 +157,7 @@ def before(p: ScenePlan, path: Path) -> int:
     """
     from matplotlib.colors import to_rgba_array
 
-    fig, axis = _frame(p.case.case.title, _corners(p.box))
+    fig, axis = _frame(p.case.case.title, box(p.box).reshape(-1, 3))
     if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
         raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
     _draw_walls(axis, p, p.triangles, p.phases[0], front=False)
@@ -196,7 +183,7 @@ def _draw_region(axis: Any, region: Any) -> None:
     from matplotlib.collections import PolyCollection
 
     if isinstance(region, Room):
-        faces = box(region.limits, {sign + k for sign in "-+" for k in "xyz"})
+        faces = box(region.limits)
     else:
         faces = tube((2 * region.radius,) * 2, *region.z, closed=(True, True))
         faces = faces + np.array([*region.center, 0.0])
