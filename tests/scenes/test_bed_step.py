@@ -14,7 +14,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import log
 from epdem.engines.liggghts import launcher
 from epdem.scenes.plan import plan
-from epdem.scenes.timestep import bed_share, sphere_impact, time_step
+from epdem.scenes.timestep import bed_share, impact, time_step
 from epdem.theory import timestep
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -73,7 +73,7 @@ def test_a_sticking_packing_is_quiet_at_the_step_of_scenes_and_explodes_above_th
     limit = math.sqrt((2 - NU) / (40 * (1 - NU)))
     case = read_toml(CASES / "settle_glass.toml")
     case["materials"]["glass"] |= {"poisson_ratio": NU}
-    x = sphere_impact(parse(case), "glass", R, "glass", 1.0)
+    x = impact(parse(case), "glass", R, "glass", 1.0, wall=False)
     assert bed_share(x, sticking=True) == pytest.approx(0.8 * limit, rel=1e-9)
     assert bed_share(x, sticking=False) == pytest.approx(0.8 * 0.5)
     quiet = energies(bed_share(x, sticking=True), tmp_path / "scene")

@@ -9,7 +9,7 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.impacts.prediction import predict
 from epdem.scenes.columns import STRAINS
-from epdem.scenes.timestep import wall_impact
+from epdem.scenes.timestep import impact
 from epdem.studies.pages import scene_sentences as sentences
 
 ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("yade", marks=pytest.mark.yade("module"))]
@@ -28,7 +28,7 @@ def one_impact(law: str, speed: float) -> dict:
 def test_an_impact_between_two_rows_has_the_largest_strain_of_theory(tmp_path, engine, law, speed):
     data = one_impact(law, speed)
     outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
-    hit = predict(wall_impact(parse(data), "glass", 2e-3, "steel", float(speed)))
+    hit = predict(impact(parse(data), "glass", 2e-3, "steel", float(speed)))
     rows, share = outcome.results.rows, 0.5 if law == "hertz" else 1.0  # the floor is 20 times as strong
     assert rows[STRAINS[0]].to_list() == pytest.approx([0.0, hit.strain[-1]], rel=2e-3)
     assert rows[STRAINS[1]].to_list() == pytest.approx([0.0, share * hit.overlap_max[-1] / 2e-3], rel=4e-3)

@@ -14,7 +14,7 @@ from ..case.scene import SceneCase
 from ..impacts.prediction import predict
 from .columns import last_frame
 from .plan import ScenePlan
-from .timestep import wall_impact
+from .timestep import impact
 
 
 def kinetic(spheres: pd.DataFrame) -> pd.Series:
@@ -172,7 +172,7 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     names = {p.material for p in case.parts.filled}
     v, radius = float(np.sqrt(2 * case.parts.gravity * fall)), case.parts.leading.radii()[0]
     pairs = [(a, b) for a in names for b in names | {*case.parts.wall_materials}]
-    e_n = max(float(predict(wall_impact(case, a, radius, b, v)).e_n[-1]) for a, b in pairs)
+    e_n = max(float(predict(impact(case, a, radius, b, v)).e_n[-1]) for a, b in pairs)
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
 
@@ -242,7 +242,7 @@ def beverloo(discharge: Discharge, outlet: float, gravity: float) -> float:
 def single_rebound(case: SceneCase, s: ReboundSpeed) -> float:
     """Speed [m/s] at which one sphere leaves a flat target, by theory alone."""
     shot = next(fill for fill in case.parts.random_fills if fill.name == s.fill).particles[0]
-    return float(predict(wall_impact(case, shot.material, shot.radii()[0], s.target, s.speed)).e_n[-1] * s.speed)
+    return float(predict(impact(case, shot.material, shot.radii()[0], s.target, s.speed)).e_n[-1] * s.speed)
 
 
 def rebounds(spheres: pd.DataFrame, speed: float, expected: float) -> tuple[float, int]:

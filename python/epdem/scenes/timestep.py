@@ -9,7 +9,7 @@ import numpy as np
 
 from ..case.scene import SceneCase
 from ..errors import CaseError
-from ..impacts.experiment import Body, Experiment, plane, sphere
+from ..impacts.experiment import Experiment, plane, sphere
 from ..impacts.plan import search, stability_limit
 from ..impacts.prediction import Prediction, predict
 from ..theory import timestep as times
@@ -51,7 +51,7 @@ def leading_impact(case: SceneCase) -> Experiment:
     """The impact that stands for a scene: of its leading spheres on a wall, else on one, at its highest speed."""
     first = case.parts.leading
     other = (*case.parts.wall_materials, first.material)[0]
-    return wall_impact(case, first.material, first.radii()[0], other, highest_speed(case))
+    return impact(case, first.material, first.radii()[0], other, highest_speed(case))
 
 
 def _impacts(case: SceneCase, density: float) -> Iterator[tuple[Experiment, Prediction, float, float]]:
@@ -63,7 +63,7 @@ def _impacts(case: SceneCase, density: float) -> Iterator[tuple[Experiment, Pred
     bodies = {(p.material, p.radii()[0]) for p in case.parts.filled}
     for material, radius in sorted(bodies):
         for other in sorted({m for m, _ in bodies} | {*case.parts.wall_materials}):
-            x = sphere_impact(case, material, radius, other, v)
+            x = impact(case, material, radius, other, v, wall=False)
             prediction = predict(x)
             if not case.law.numbers.compaction:
                 yield x, prediction, stability_limit(x, float(prediction.overlap_max.max())), 1.0
@@ -99,9 +99,13 @@ def time_step(case: SceneCase, density: float) -> float:
     return float(f"{math.floor(best / power) * power:.1e}")  # two digits, rounded down: the deck is readable
 
 
-def _impact(case: SceneCase, body: Body, target: Body, v: float) -> Experiment:
-    law = pair_law(case, body.material, target.material)[0]
+def impact(case: SceneCase, material: str, radius: float, other: str, v: float, *, wall: bool = True) -> Experiment:
+    """The impact of a sphere of `radius` [m] on a flat wall of `other`, or on a sphere of its own size, at speeds up to
+    v [m/s]. That of spheres is a scene's shortest."""
+    law = pair_law(case, material, other)[0]
     viscous = case.viscous.restitution if case.viscous and not law.adheres else None  # no theory has both
+    body, target = (sphere(case.materials[name], radius=radius, name=name) for name in (material, other))
+    target = plane(case.materials[other], name=other) if wall else target
     x = Experiment(law, body, target, np.geomspace(v / 100, v, 5), viscous_restitution=viscous, name=case.name)
     return replace(x, speed=_far_from_sticking(x))
 
@@ -112,15 +116,3 @@ def _far_from_sticking(x: Experiment) -> np.ndarray:
     share = v / max(float(x.theory().sticking_speed(m_star=x.m_star)), 1e-300)
     far = v[(share < 0.5) | (share > 2.0)]
     return far if far.size else v[-1:] * 2.0 / share[-1]
-
-
-def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:
-    """The impact of a sphere on one of `other` of the same radius [m] at speeds up to v [m/s]: a scene's shortest."""
-    body, target = (sphere(case.materials[name], radius=radius, name=name) for name in (material, other))
-    return _impact(case, body, target, v)
-
-
-def wall_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:
-    """The impact of a sphere of `radius` [m] on a flat wall of `other`, at speeds up to v [m/s]."""
-    body = sphere(case.materials[material], radius=radius, name=material)
-    return _impact(case, body, plane(case.materials[other], name=other), v)
