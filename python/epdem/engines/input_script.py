@@ -129,7 +129,7 @@ def row_words(p: ScenePlan) -> Iterator[str]:
 
 def first_look(p: ScenePlan, run: PhaseSteps) -> int:
     """The steps of a phase before its condition is evaluated."""
-    rows = math.ceil(run.phase.case.condition_from / run.phase.time_step / p.every)
+    rows = math.ceil(run.case.condition_from / run.time_step / p.every)
     return min(run.steps, p.every * max(1, rows))
 
 
@@ -139,7 +139,7 @@ def stop_condition(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], 
     None: it does not. place: formula of the place of the plate that presses a bed.
     """
     void = next((void_height(bed, place(bed)) for bed in p.pressed if bed.phase == run.name), "")
-    until = run.phase.case.condition
+    until = run.case.condition
     if until is None:
         return StopCondition(0, run.steps // p.every, "", "", void) if void else None
     first = first_look(p, run)

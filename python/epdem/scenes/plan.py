@@ -72,30 +72,21 @@ class Phase:
         return x, y, z
 
 
-@dataclass(frozen=True)
-class PhaseSteps:
+@dataclass(frozen=True, kw_only=True)
+class PhaseSteps(Phase):
     """A phase between its neighbours. upto: whether its last step is known before the run. end_frames: kinds of frames
     that are due at its end beside those every N steps.
     """
 
-    phase: Phase
     before: Phase | None
     after: Phase | None
     upto: bool
     end_frames: tuple[str, ...]
 
     @property
-    def name(self) -> str:
-        return self.phase.name
-
-    @property
-    def moves(self) -> dict[str, Move]:
-        return self.phase.moves
-
-    @property
     def record(self) -> bool:
         """Whether the phase has frames."""
-        return self.phase.case.record
+        return self.case.record
 
     @property
     def goes_on(self) -> bool:
@@ -104,23 +95,22 @@ class PhaseSteps:
 
     @property
     def steps(self) -> int:
-        return self.phase.end - (self.before.end if self.before else 0)
+        return self.end - (self.before.end if self.before else 0)
 
     @property
     def own_time_step(self) -> float | None:
         """The time step [s]; None: the time step of the phase before."""
-        step = self.phase.time_step
-        return None if self.before is None or self.before.time_step == step else step
+        return self.time_step if self.before and self.before.time_step != self.time_step else None
 
     @property
     def added(self) -> list[str]:
         """Walls that come with the phase."""
-        return [name for name in self.phase.gates if self.before is None or name not in self.before.gates]
+        return [name for name in self.gates if self.before is None or name not in self.before.gates]
 
     @property
     def removed(self) -> list[str]:
         """Walls that go at its end."""
-        return [name for name in self.phase.gates if self.after and name not in self.after.gates]
+        return [name for name in self.gates if self.after and name not in self.after.gates]
 
 
 @dataclass(frozen=True)
@@ -163,8 +153,9 @@ class ScenePlan:
         found, upto = [], True
         for before, phase, after in zip((None, *self.phases[:-1]), self.phases, (*self.phases[1:], None), strict=True):
             upto = upto and phase.case.condition is None
-            ends = (name for name, every in self.intervals.items() if not upto or phase.end % every)
-            found.append(PhaseSteps(phase, before, after, upto, tuple(ends) if phase.case.record else ()))
+            due = (name for name, every in self.intervals.items() if not upto or phase.end % every)
+            ends = tuple(due) if phase.case.record else ()
+            found.append(PhaseSteps(**vars(phase), before=before, after=after, upto=upto, end_frames=ends))
         return tuple(found)
 
     @property

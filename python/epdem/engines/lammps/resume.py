@@ -43,7 +43,7 @@ def _gates(p: ScenePlan, number: int, *, ended: bool) -> list[DeckWall]:
     there: list[str] = []
     for run in p.phase_steps[: number + 1]:
         there += run.added
-        if ended or run.phase is not p.phases[number]:
+        if ended or run.name != p.phases[number].name:
             there = [name for name in there if name not in run.removed]
     walls = {w.name: w for w in p.scene.gates}
     return [plane(p, walls[name]) for name in there]

@@ -267,15 +267,15 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             steps=run.steps,
             start_commands=tuple(motions[name][0] for name in new),
             gates=tuple(gates[name] for name in run.added),
-            resume_gates=tuple(gates[name] for name in run.phase.gates),
+            resume_gates=tuple(gates[name] for name in run.gates),
             resume_commands=tuple(begin for begin, _ in motions.values()),
             end_commands=(
                 *(f"unfix {decks.wall_id(name)}" for name in run.removed),
-                *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run.phase, after)),
+                *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run, after)),
             ),
             particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == run.name),
-            power=power(p, run.phase) if with_power else "",
-            vibrations=tuple(_angles(before, run.phase, new)) if with_power else (),
+            power=power(p, run) if with_power else "",
+            vibrations=tuple(_angles(before, run, new)) if with_power else (),
             stop=stop_condition(p, run, partial(_place, p)),
         )
         found.append(part)

@@ -133,9 +133,9 @@ def _phases(p: ScenePlan) -> Iterator[DeckPhase]:
     for run in p.phase_steps:
         yield DeckPhase(
             run=run,
-            motions=motions(p, run.phase),
+            motions=motions(p, run),
             bodies=bodies_file(p, run.name),
-            fills=tuple(fills(p, run.phase)),
+            fills=tuple(fills(p, run)),
             stop=stop(p, run),
             void=void(p, run.name),
         )

@@ -139,7 +139,7 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 
 def stop(p: ScenePlan, run: PhaseSteps) -> tuple[str, int] | None:
     """The condition on a row that may end a phase early, and the steps after which it is evaluated."""
-    until = run.phase.case.condition
+    until = run.case.condition
     if until is None:
         return None
     limit = decks.number(until.limit)
