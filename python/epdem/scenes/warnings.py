@@ -234,27 +234,17 @@ def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> Floa
 
 
 def lost_spheres(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
-    """A sentence for a run that has lost spheres, from the frames or, where they hold none of them, from the rows."""
+    """A sentence for a run that has lost spheres: how many, when, and from the frames, which."""
     rows = tables["rows"]
-    if p.scene.open_boundary or rows["particles"].iloc[-1] >= rows["particles"].max():
+    lost = int(rows["particles"].max() - rows["particles"].iloc[-1])
+    if p.scene.open_boundary or not lost:
         return []
-    frames = tables.get("particles")
-    gone = None
-    if frames is not None and len(frames):
-        last = frames.drop_duplicates("id", keep="last")
-        gone = last[last["step"] < p.frame_steps(p.frames)[-1]]
-    if gone is None or gone.empty:
-        before = int(np.flatnonzero(np.diff(rows["particles"]) < 0)[0])
-        one, other = rows.iloc[before], rows.iloc[before + 1]
-        return [
-            f"scene: the first of {int(rows['particles'].max() - rows['particles'].iloc[-1])} lost spheres left the "
-            f"room between {one['time']:.4g} s and {other['time']:.4g} s; {ADVICE}"
-        ]
-    times = p.time_at(gone["step"].to_numpy())
-    named = [
-        f"sphere {x.id} (last at ({x.x:.4g}, {x.y:.4g}, {x.z:.4g}) m with ({x.vx:.3g}, {x.vy:.3g}, {x.vz:.3g}) m/s at "
-        f"{time:.4g} s, step {x.step})"
-        for x, time in zip(gone.head(NAMED).itertuples(), times, strict=False)
-    ]
-    more = f" and {len(gone) - NAMED} more" if len(gone) > NAMED else ""
-    return [f"scene: {len(gone)} spheres have left the room, {', '.join(named)}{more}; {ADVICE}"]
+    before = int(np.flatnonzero(np.diff(rows["particles"]) < 0)[0])
+    said = f"scene: {lost} spheres have left the room, the first between "
+    said += " s and ".join(f"{time:.4g}" for time in rows["time"].iloc[before : before + 2]) + " s"
+    if p.frames:
+        last = tables["particles"].drop_duplicates("id", keep="last")
+        for x in last[last["step"] < p.frame_steps(p.frames)[-1]].head(NAMED).itertuples():
+            said += f", sphere {x.id} (last at ({x.x:.4g}, {x.y:.4g}, {x.z:.4g}) m with ({x.vx:.3g}, {x.vy:.3g}, "
+            said += f"{x.vz:.3g}) m/s, step {x.step})"
+    return [f"{said}; {ADVICE}"]
