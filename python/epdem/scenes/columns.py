@@ -41,6 +41,8 @@ COLUMNS = {
     **{axis: Column("m", f"{axis} of the centre") for axis in "xyz"},
     **{f"v{axis}": Column("m/s", f"{axis} component of the velocity") for axis in "xyz"},
     **{f"omega_{axis}": Column("rad/s", f"{axis} component of the angular velocity") for axis in "xyz"},
+    "speed": Column("m/s", "of a colour: speed of the sphere"),
+    "energy": Column("J", "of a colour: translational kinetic energy of the sphere"),
     "plastic_work": Column("J", "plastic work so far; of a sphere half of the work of each of its contacts"),
     "adhesive_work": Column("J", "work lost by adhesion, half of each contact"),
     "friction_work": Column("J", "work of friction, half of each contact"),

@@ -10,6 +10,7 @@ import pandas as pd
 from ..base.files import atomic
 from ..case.walls import Room
 from ..errors import CaseError
+from ..report.chart import Axis
 from . import placement
 from .checks import kinetic
 from .columns import columns_of_frames, last_frame, units
@@ -44,20 +45,10 @@ def _axes() -> tuple[FloatArray, FloatArray]:
     return np.stack([right, np.cross(towards, right)]), towards
 
 
-def colour(spheres: pd.DataFrame, field: str) -> pd.Series:
-    """The values of a field of each sphere: a column of the frames, "speed" [m/s] or "energy" [J].
-
-    Raises KeyError for another one.
-    """
-    if field == "speed":
-        speed: pd.Series = np.sqrt((spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1))
-        return speed
-    return kinetic(spheres) if field == "energy" else spheres[field]
-
-
-def unit_of(spheres: pd.DataFrame, field: str) -> str:
-    """The unit of `colour`."""
-    return {"speed": "m/s", "energy": "J"}.get(field, units(spheres).get(field, ""))
+def coloured(spheres: pd.DataFrame) -> pd.DataFrame:
+    """The spheres with their speed [m/s] and energy [J] beside the columns of the frames: fields of output.color."""
+    speed = np.sqrt((spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1))
+    return spheres.assign(speed=speed, energy=kinetic(spheres))
 
 
 def refuse_color(p: ScenePlan) -> None:
@@ -128,25 +119,28 @@ def _save(fig: Any, path: Path) -> None:
         fig.savefig(temporary, dpi=DPI)
 
 
-def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
-    """Draw walls and spheres of the last frame, coloured by the field `output.color`, into the PNG file `path`.
+def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> str:
+    """Draw walls and spheres of the last frame, coloured by the field `output.color`, into the PNG file `path`; what it
+    shows, in words.
 
     A wall that a force drives is left out: no table holds its position.
     """
     from matplotlib.cm import ScalarMappable
 
-    last = last_frame(spheres)
-    x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
+    last = coloured(last_frame(spheres))
+    x, radius, values = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), last[p.output.color]
     around = np.concatenate([x - radius[:, None], x + radius[:, None]])
     fig, axis = _frame(p.case.case.title, around, beside=BAR)
     walls = at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles)
     _draw_walls(axis, p, walls, p.phases[-1], front=False)
     shown = ScalarMappable(cmap="viridis")
-    _draw_spheres(axis, x, radius, shown.to_rgba(colour(last, field).to_numpy())[:, :3])
+    _draw_spheres(axis, x, radius, shown.to_rgba(values.to_numpy())[:, :3])
     _draw_walls(axis, p, walls, p.phases[-1], front=True)
-    unit = unit_of(last, field)
-    fig.colorbar(shown, ax=axis, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
+    label = str(Axis(p.output.color, units(last).get(p.output.color, "")))
+    fig.colorbar(shown, ax=axis, label=label, shrink=0.8)
     _save(fig, path)
+    time = float(p.time_at(last["step"].to_numpy()[:1])[0])
+    return f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
 
 
 def before(p: ScenePlan, path: Path) -> int:

@@ -17,7 +17,7 @@ from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from ..report.page import Picture
 from . import checks, pictures, stages
-from .columns import LOADS, last_frame, place, units
+from .columns import LOADS, place, units
 from .measures import curve, values_of
 from .plan import ScenePlan
 from .run import SceneOutcome
@@ -139,14 +139,8 @@ def bed(outcome: SceneOutcome) -> list[Picture]:
     table = outcome.results.tables.get("particles")
     if table is None or table.empty:
         return []
-    path, field = outcome.folder / "bed.png", outcome.plan.output.color
-    pictures.bed(outcome.plan, table, path)
-    frame = last_frame(table)
-    time = float(outcome.plan.time_at(frame["step"].to_numpy()[:1])[0])
-    values, of = pictures.colour(frame, field), pictures.unit_of(frame, field)
-    label = f"{field} [{of}]" if of else field
-    alt = f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
-    return [Picture("The bed", alt, file=path)]
+    path = outcome.folder / "bed.png"
+    return [Picture("The bed", pictures.bed(outcome.plan, table, path), file=path)]
 
 
 def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:
