@@ -12,7 +12,6 @@ from epdem.engines import scene_engine, texts_with_reasons
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import Plan, plan
 from epdem.impacts.prediction import predict
-from epdem.jobs.stage import texts
 from epdem.scenes.plan import ScenePlan
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -42,7 +41,7 @@ def checked_deck(p: ScenePlan) -> dict[str, str]:
     """The texts of a scene's LIGGGHTS files by their path. Raises CaseError."""
     engine = scene_engine("liggghts")
     engine.check(p)
-    return texts(engine, p)
+    return engine.files(p)
 
 
 def reasons(job: Plan | ScenePlan) -> list[tuple[str, str, str]]:

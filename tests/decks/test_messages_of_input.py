@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from stored_decks import checked_deck
 
 from epdem.case import impact, scene, sizes
 from epdem.case.toml import read_toml
@@ -20,6 +19,7 @@ from epdem.scenes import placement
 from epdem.scenes.measures import refuse_measures
 from epdem.scenes.plan import plan
 from epdem.verification.models.theories import Mdr
+from stored_decks import checked_deck
 
 sys.path.append(str(Path(__file__).parents[1] / "scenes"))
 from parts_cases import BED, CASE, FLOOR

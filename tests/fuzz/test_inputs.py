@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from stored_decks import checked_deck
 from strategies import CASES, FILES, cases, damaged, numbers, quantities, toml, values, words
 
 from epdem.case import impact, scene
@@ -28,6 +27,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import COLUMNS, predict
 from epdem.scenes.plan import plan as plan_scene
+from stored_decks import checked_deck
 
 FOREIGN = re.compile(r"Input should|should have|Field required|valid (number|string|list)|function-|pydantic|Traceback")
 

@@ -14,7 +14,6 @@ from scene_runs import write_case
 from epdem.case.scene import load, parse
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
-from epdem.jobs.stage import texts
 from epdem.scenes.plan import ScenePlan, plan
 from epdem.scenes.run import run_plan
 
@@ -81,7 +80,7 @@ def store(name: str) -> None:
     folder = STORED / name
     shutil.rmtree(folder, ignore_errors=True)
     p = plan(parse(data_of(name)))
-    deck = texts(engine, p)
+    deck = engine.files(p)
     with tempfile.TemporaryDirectory() as scratch:
         run_plan(p, engine, Path(scratch))
         written = [path for path in Path(scratch).iterdir() if is_of_run(path, deck)]

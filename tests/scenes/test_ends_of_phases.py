@@ -12,7 +12,6 @@ from scene_runs import run, write_case
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
-from epdem.jobs.stage import texts
 from epdem.scenes.plan import ScenePlan, plan
 from epdem.scenes.timestep import time_step
 from epdem.scenes.warnings import planned_warnings
@@ -48,7 +47,7 @@ def test_the_plate_of_a_compaction_stops_at_its_height(rows, given, tolerance):
     """The strokes over the speeds of the case file."""
     data = own("compaction_powder")
     data["output"], data["numerics"] = {"rows": rows, "particles": 3}, given
-    deck = texts(scene_engine("liggghts"), plan(parse(data)))
+    deck = scene_engine("liggghts").files(plan(parse(data)))
     load, unload = durations(deck["setup.in"] + deck["in.scene"])
     assert load == pytest.approx(LOAD, rel=tolerance) and unload == pytest.approx(UNLOAD, rel=tolerance)
 
@@ -59,7 +58,7 @@ def phases_of(numerics: dict, **own_steps: str) -> tuple[list[float], list[float
     phases = [{"name": name, "duration": t} for name, t in wanted.items()]
     phases = [phase | ({"time_step": own_steps[n]} if (n := phase["name"]) in own_steps else {}) for phase in phases]
     p = plan(parse(parts(phase=phases) | {"numerics": numerics}))
-    deck = texts(scene_engine("liggghts"), p)
+    deck = scene_engine("liggghts").files(p)
     text = deck["setup.in"] + deck["in.scene"]
     return durations(text), [float(line.split()[1]) for line in text.splitlines() if line.startswith("timestep")], p
 

@@ -22,7 +22,6 @@ from hypothesis import strategies as st
 from other_routes import assert_forces, assert_frames, porosity
 from pydantic import BaseModel
 from scene_runs import restart_steps, run, write_case, write_deck
-from stored_decks import checked_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import SceneCase, parse
@@ -36,6 +35,7 @@ from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
 from epdem.studies.sweep.points import keys_of
 from epdem.theory.cavity import FINITE_STRAIN
+from stored_decks import checked_deck
 
 
 def with_key(key):

@@ -115,7 +115,7 @@ def broken(kind: str) -> np.ndarray:
 @pytest.mark.parametrize(
     ("kind", "change", "words"),
     [
-        ("open", {"closed": True}, r"bowl.file: open along 3 edges, one at \(0, 0.005, 0\) m; close the mesh"),
+        ("open", {"closed": True}, r"bowl.file: open along 3 edges, one at \(0.*\) m; close the mesh"),
         ("flipped", {}, r"bowl.file: .*flipped against each other at \d edges, one at"),
         ("degenerate", {}, r"bowl.file: 1 degenerate triangles .* the first is number 5 at \(0.005, 0.005, 0\) m"),
         ("many", {}, r"bowl.file: 1 edges belong to more than two triangles, one at \(0.005, 0, 0\) m"),

@@ -121,6 +121,9 @@ def test_porosity_is_exact_to_a_ten_thousandth(seed, overlap, upright):
     assert curve({"kind": "porosity", "region": region}, spheres(0, places)) == [pytest.approx(1 - taken, abs=1e-4)]
 
 
+CENTRE = dict.fromkeys("xyz", 0.0)
+
+
 def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
     """An elastic sphere on a wall: m v^2/2 = 8/15 E* sqrt(R) alpha^(5/2)."""
     data = parts(measure=[{"name": "speed", "kind": "impact_speed", "bins": 2}], body=[])
@@ -129,8 +132,10 @@ def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
     radius, mass, overlap = 1.5e-3, 3e-5, 2e-5
     E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
     tables = {
-        "particles": pd.DataFrame({"step": [0], "id": [1], "radius": [radius], "mass": [mass], "type": [1]}),
-        "contacts": pd.DataFrame({"wall": ["floor"] * 2, "i": 1, "j": 0, "delta_max": [0.5 * overlap, overlap]}),
+        "particles": pd.DataFrame({"step": [0], "id": 1, "radius": radius, "mass": mass, "type": 1} | CENTRE),
+        "contacts": pd.DataFrame(
+            {"step": 0, "wall": ["floor"] * 2, "i": 1, "j": 0, "delta_max": [0.5 * overlap, overlap]}
+        ),
     }
     found = measures.histograms(p, tables)
     v = math.sqrt(2 * 8 / 15 * E_star * math.sqrt(radius) * overlap**2.5 / mass)
@@ -146,10 +151,11 @@ def test_a_bed_of_many_radii_makes_one_law_for_each_pair_of_materials(law, monke
     data["law"] = {"name": "hertz"} if law == "hertz" else {"name": "thornton", "yield_pressure": "0.2 MPa"}
     p = plan(parse(data))
     rng, n, mass = np.random.default_rng(3), 1000, 3e-5
+    ids = np.arange(1, n + 1)
     radius, overlap = rng.uniform(1e-3, 2e-3, n), rng.uniform(1e-5, 3e-5, n)
     tables = {
-        "particles": pd.DataFrame({"id": np.arange(1, n + 1), "radius": radius, "mass": mass, "type": 1}),
-        "contacts": pd.DataFrame({"wall": "floor", "i": np.arange(1, n + 1), "j": 0, "delta_max": overlap}),
+        "particles": pd.DataFrame({"step": 0, "id": ids, "radius": radius, "mass": mass, "type": 1} | CENTRE),
+        "contacts": pd.DataFrame({"step": 0, "wall": "floor", "i": ids, "j": 0, "delta_max": overlap}),
     }
     made, real = [], LawSpec.backbone
     monkeypatch.setattr(LawSpec, "backbone", lambda self, **given: made.append(given) or real(self, **given))

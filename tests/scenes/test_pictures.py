@@ -118,9 +118,8 @@ def test_the_time_of_the_bed_counts_the_steps_of_each_phase(tmp_path):
     """1000 steps of 2e-5 s and 1000 of 1e-5 s."""
     phases = [{"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration": "10 ms", "time_step": "1e-5 s"}]
     p = plan(parse(parts(phase=phases)))
-    frame = pd.DataFrame(
-        {"step": [p.steps], "x": 0.0, "y": 0.0, "z": 1e-3, "radius": 1e-3, "mass": 1e-5, "vx": 0.0, "vy": 0.0, "vz": 0.0}
-    )
+    still = dict.fromkeys(("x", "y", "vx", "vy", "vz"), 0.0)
+    frame = pd.DataFrame({"step": [p.steps], "z": 1e-3, "radius": 1e-3, "mass": 1e-5} | still)
     (picture,) = bed(SimpleNamespace(plan=p, folder=tmp_path, results=SimpleNamespace(tables={"particles": frame})))
     assert p.steps == 2000 and "at 0.03 s;" in picture.alt
 

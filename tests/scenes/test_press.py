@@ -294,3 +294,14 @@ def test_walls_of_a_press_that_never_yield_beside_some_spheres_are_told():
         assert "give the walls the material 'powder'" in sentence and said(174, **scene) == []
     assert said(176, particles=both, walls="powder") == []
     assert said(176, particles=[both[1] | {"share": 1.0}]) == []
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_work_of_a_press_needs_no_energy_balance(engine, tmp_path):
+    """The force of the punch times its way."""
+    data = without(press(stages=["10 MPa"]), "hold")
+    data["output"] |= {"energy": False, "color": "speed"}
+    found = run(write_case(data, tmp_path), engine, out=tmp_path / "out").results
+    way = -np.diff(found.rows["punch_z"], prepend=HEIGHT)
+    work = (found.rows["pressure"] * SIDE**2 * way).cumsum().iloc[-1]
+    assert found.stages["work"].iloc[-1] == pytest.approx(work, rel=0.05) and work > 0.0

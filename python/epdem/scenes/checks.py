@@ -9,7 +9,6 @@ import pandas as pd
 
 from ..base.tables import Column
 from ..case.outputs import BedRebound, FloorLoad, MassFlow, ReboundSpeed, Unloading
-from ..case.outputs import Row as NamedRow
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
 from .columns import last_frame
@@ -32,28 +31,10 @@ def rotation(spheres: pd.DataFrame) -> pd.Series:
 
 
 def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
-    """Work [J] that moving walls have done up to each row: mean force or torque of the interval times the displacement.
-
-    The torque of a round wall counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the
-    energies.
-    """
-    dt = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
-    if "wall_power" in p.row_columns:
-        return np.cumsum(rows["wall_power"].to_numpy() * dt)
-    power = np.zeros(len(rows))
-    for row in p.work_rows:
-        power -= row.sign * rows[row.name].to_numpy() * _velocity(p, row, rows)
-    return np.cumsum(power * dt)
-
-
-def _velocity(p: ScenePlan, row: NamedRow, rows: pd.DataFrame) -> np.ndarray:
-    """Velocity [m/s] of a row's wall along its axis, or its turn [rad/s], in the interval that ends with each row."""
-    if row.torque:
-        (turn,) = p.rotations(row.wall)
-        return np.full(len(rows), turn.rate * turn.axis[row.axis])
-    phase = np.searchsorted([phase.end for phase in p.phases[:-1]], rows["step"])
-    speeds: np.ndarray = np.array([phase.velocity(row.wall)[row.axis] for phase in p.phases])[phase]
-    return speeds
+    """Work [J] that moving walls have done up to each row."""
+    if "wall_power" not in p.row_columns:
+        return np.zeros(len(rows))
+    return np.cumsum(rows["wall_power"].to_numpy() * np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0))
 
 
 WORKS = {  # terms of the balance by the columns of the frames
@@ -193,7 +174,8 @@ def stiffness(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float
 def works_of_wall(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[float, float]:
     """Work [J] that a wall (put in, got back): its force, a mean over each interval, times the displacement."""
     row = next(row for row in p.scene.row if row.name == press.force)
-    speed = row.sign * _velocity(p, row, rows)
+    phase = np.searchsorted([phase.end for phase in p.phases[:-1]], rows["step"])
+    speed = row.sign * np.array([phase.velocity(row.wall)[row.axis] for phase in p.phases])[phase]
     seconds = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
     work = rows[press.force].to_numpy() * np.abs(speed) * seconds
     return float(work[speed < 0].sum()), float(work[speed > 0].sum())

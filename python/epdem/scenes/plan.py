@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy as np
 import pandas as pd
 
-from ..case.outputs import Row
 from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
 from ..case.walls import CasePhase, Limits, LinearMove, Move, RotateMove, Vector3
@@ -271,38 +270,15 @@ class ScenePlan:
 
     @property
     def row_columns(self) -> tuple[str, ...]:
-        """The power of moving walls, in the rows if their work follows from no other column."""
+        """The power of moving walls, in the rows of a scene that has their work."""
         moving = any(map(meshes.surface_rotation, self.scene.meshes.values())) or any(p.moves for p in self.phases)
-        return ("wall_power",) if moving and self.output.energy and not self.work_rows else ()
+        return ("wall_power",) if moving and (self.output.energy or self.scene.stages) else ()
 
     @property
     def measured_walls(self) -> tuple[str, ...]:
         """The walls whose forces an engine writes: those of `loads` and of the rows that the scene names."""
         named = {row.wall for row in self.scene.row if not row.position}
         return tuple(w.name for w in self.scene.wall if w.name in {*self.loads, *named})
-
-    @property
-    def work_rows(self) -> tuple[Row, ...]:
-        """The rows from which the work of all moving walls follows, one for each wall; empty: a wall has none."""
-        found = []
-        for name, mesh in self.scene.meshes.items():
-            turn = meshes.surface_rotation(mesh)
-            moves = [phase.moves[name] for phase in self.phases if name in phase.moves]
-            ways = [move.velocity for move in moves if isinstance(move, LinearMove)]
-            kind, vectors = ("torque", [turn.axis]) if turn else ("force", ways)
-            if not (turn or moves):
-                continue
-            suitable = [
-                row
-                for row in self.scene.row
-                if (row.wall, row.quantity, row.area) == (name, kind, None)
-                and len(ways) == len(moves) * (not turn)
-                and all(k == row.axis or not x for vector in vectors for k, x in enumerate(vector))
-            ]
-            if not suitable:
-                return ()
-            found += suitable[:1]
-        return tuple(found)
 
     @property
     def stress_walls(self) -> tuple[str, ...]:

@@ -155,7 +155,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
-    every_step = p.row_columns or p.work_rows or any(mesh.wear for mesh in p.scene.meshes.values())
+    every_step = p.row_columns or any(mesh.wear for mesh in p.scene.meshes.values())
     return SceneDeck(
         plan=p,
         contact=ContactClasses(m.law, functors(m, shapes, recordStrain=True), materials(m)),
