@@ -4,45 +4,25 @@
 import numpy as np
 import pandas as pd
 
-from ..base.tables import Column
 from ..case.impact import Check
 from .prediction import Prediction
 
 CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
 OBLIQUE = ("psi_2", "e_t", "impulse_ratio", "rebound_angle", "spin")
-COLUMNS = {
-    "engine": Column("", "engine that ran the impact"),
-    "law": Column("", "contact law"),
-    "speed": Column("m/s", "normal impact speed"),
-    "gap": Column("m", "distance of the surfaces at the start"),
-    "e_n": Column("", "coefficient of restitution"),
-    "contact_time": Column("s", "time between the first and the last contact force"),
-    "force_max": Column("N", "largest normal force"),
-    "overlap_max": Column("m", "largest overlap"),
-    "residual_overlap": Column("m", "overlap at the end of the contact"),
-    "energy_residual": Column("", "work in less work out less plastic work, over the kinetic energy"),
-    "stuck": Column("", "number of starting phases after which the bodies stay together"),
-    "steps_in_contact": Column("", "smallest number of samples with a force"),
-    "passed": Column("", "whether every error is within the tolerance of the case"),
-    # oblique impacts
-    "angle": Column("rad", "impact angle, from the normal"),
-    "spin_before": Column("rad/s", "angular velocity before the impact"),
-    "e_t": Column("", "tangential restitution of the centres"),
-    "impulse_ratio": Column("", "tangential over normal impulse"),
-    "rebound_angle": Column("rad", "rebound angle, from the normal"),
-    "spin": Column("rad/s", "angular velocity after the impact"),
-    "psi_1": Column("", "slip before the impact over the speed, times kappa/mu"),
-    "psi_2": Column("", "slip after the impact over the speed, times kappa/mu"),
-    # theory and paths
-    "radius_max": Column("m", "largest contact radius"),
-    "work_in": Column("J", "work of the loading"),
-    "work_out": Column("J", "work of the unloading"),
-    "plastic_work": Column("J", "plastic work"),
-    "time": Column("s", "time since the start"),
-    "overlap": Column("m", "overlap"),
-    "force": Column("N", "normal force"),
+UNITS = {  # of the columns that have one
+    f"{column}{of}": unit
+    for unit, columns in {
+        "m/s": "speed",
+        "m": "gap overlap_max residual_overlap radius_max overlap",
+        "s": "contact_time time",
+        "N": "force_max force",
+        "J": "work_in work_out plastic_work",
+        "rad": "angle rebound_angle",
+        "rad/s": "spin_before spin",
+    }.items()
+    for column in columns.split()
+    for of in ("", "_theory")
 }
-UNITS = {f"{name}{of}": column.unit for name, column in COLUMNS.items() for of in ("", "_theory") if column.unit}
 
 
 def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:

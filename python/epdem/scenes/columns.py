@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from ..base.tables import Column
 from ..errors import EngineError
 from ..laws.library import Law
 from ..laws.strengths import LawSpec
@@ -22,80 +21,22 @@ from .model import pair_law
 from .plan import ScenePlan
 
 Array = npt.NDArray[np.float64]
-COLUMNS = {
-    "step": Column("", "number of the time step"),
-    "time": Column("s", "time since the begin of the run"),
-    # rows
-    "particles": Column("", "number of spheres in the room"),
-    "kinetic_energy": Column("J", "translational kinetic energy of the spheres"),
-    "largest_radius_ratio": Column(
-        "", "largest strain w a/R* of all contacts since the start; a: contact radius, w: share of the weaker body"
-    ),
-    "largest_overlap_ratio": Column("", "largest w delta/R* of all contacts since the start; delta: overlap"),
-    "wall_power": Column("W", "power of all moving walls, mean over a row"),
-    # frames of spheres
-    "id": Column("", "number of the sphere"),
-    "type": Column("", "number of the material"),
-    "radius": Column("m", "radius of the sphere"),
-    "mass": Column("kg", "mass of the sphere"),
-    **{axis: Column("m", f"{axis} of the centre") for axis in "xyz"},
-    **{f"v{axis}": Column("m/s", f"{axis} component of the velocity") for axis in "xyz"},
-    **{f"omega_{axis}": Column("rad/s", f"{axis} component of the angular velocity") for axis in "xyz"},
-    "speed": Column("m/s", "of a colour: speed of the sphere"),
-    "energy": Column("J", "of a colour: translational kinetic energy of the sphere"),
-    "plastic_work": Column("J", "plastic work so far; of a sphere half of the work of each of its contacts"),
-    "adhesive_work": Column("J", "work lost by adhesion, half of each contact"),
-    "friction_work": Column("J", "work of friction, half of each contact"),
-    "friction_energy": Column("J", "elastic energy of the friction springs, half of each contact"),
-    # contacts
-    "wall": Column("", "name of the wall, empty between two spheres"),
-    "i": Column("", "id of the first sphere"),
-    "j": Column("", "id of the second sphere, 0 for a wall"),
-    "overlap": Column("m", "overlap"),
-    "added_overlap": Column("m", "overlap that the growth of both spheres adds (compaction)"),
-    "screening": Column("", "elastic recovery over the recovery of the contact alone (compaction)"),
-    **{f"normal_{axis}": Column("", f"{axis} of the unit vector from the second body to the first") for axis in "xyz"},
-    **{f"force_{axis}": Column("N", f"{axis} of the force on the first sphere, friction included") for axis in "xyz"},
-    "force": Column("N", "normal force"),
-    "contact_radius": Column("m", "radius of the contact, 0 without force"),
-    "delta_max": Column("m", "largest overlap so far"),
-    "residual_overlap": Column("m", "overlap at which the unloaded contact has no force"),
-    "dent_radius": Column("m", "contact radius at the largest overlap, 0 without plastic work"),
-    "elastic_energy": Column("J", "elastic energy of the normal force"),
-    # triangles of walls
-    "triangle": Column("", "number of the triangle"),
-    "area": Column("m^2", "area of the triangle"),
-    "normal_stress": Column("Pa", "normal force on the triangle over its area"),
-    "shear_stress": Column("Pa", "tangential force on the triangle over its area"),
-    "wear": Column("m", "depth of wear of the triangle"),
-    # energy balance
-    "kinetic": Column("J", "translational kinetic energy"),
-    "rotation": Column("J", "rotational kinetic energy"),
-    "gravity": Column("J", "potential energy of the weight"),
-    "elastic": Column("J", "elastic energy of the normal forces"),
-    "plastic": Column("J", "plastic work so far"),
-    "adhesion": Column("J", "work lost by adhesion so far"),
-    "friction": Column("J", "work of friction so far"),
-    "springs": Column("J", "elastic energy of the friction springs"),
-    "work": Column("J", "work of the walls on the spheres so far"),
-    "lost_spheres_energy": Column("J", "energy of the spheres that have left the room"),
-    "balance": Column("J", "sum of all energies less the work of the walls, above its first value"),
-    # stages of a press
-    "pressure": Column("Pa", "pressure on the punch, mean of the last row of the phase"),
-    "opposite_pressure": Column("Pa", "pressure on the plane that it presses against, likewise"),
-    "height": Column("m", "height of the bed at the end of the phase, in rows in the middle of the row"),
-    "relative_density": Column("", "volume of the spheres over the volume of the bed"),
-    "porosity": Column("", "1 less the relative density"),
-    "springback": Column("", "axial strain since the end of the last phase of loading"),
-    "radial_pressure": Column("Pa", "mean normal force on the sides over their area"),
-    "radial_over_axial": Column("", "radial pressure over the mean of both axial ones"),
-    # phases
-    "phase": Column("", "name of the phase"),
-    "begin": Column("", "first step of the phase"),
-    "end": Column("", "last step of the phase"),
-    "until": Column("", "whether the stop condition was reached; empty without one"),
-    "begin_time": Column("s", "time of the first step of the phase"),
-    "end_time": Column("s", "time of the last step of the phase"),
+UNITS = {  # of the columns that have one
+    column: unit
+    for unit, columns in {
+        "s": "time begin_time end_time",
+        "m": "x y z radius overlap added_overlap contact_radius delta_max residual_overlap dent_radius wear height",
+        "m^2": "area",
+        "m/s": "vx vy vz speed",
+        "rad/s": "omega_x omega_y omega_z",
+        "kg": "mass",
+        "N": "force force_x force_y force_z",
+        "Pa": "normal_stress shear_stress pressure opposite_pressure radial_pressure",
+        "W": "wall_power",
+        "J": "kinetic_energy energy plastic_work adhesive_work friction_work friction_energy elastic_energy "
+        "kinetic rotation gravity elastic plastic adhesion friction springs work lost_spheres_energy balance",
+    }.items()
+    for column in columns.split()
 }
 LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]
@@ -120,7 +61,7 @@ def units(table: pd.DataFrame) -> dict[str, str]:
     for name in map(str, table):
         dent = "m" if name.startswith("delta_max_") else None  # of a flat wall NAME
         unit = table.attrs.get("units", {}).get(name) or unit_of_load(name) or dent
-        if unit := unit or (COLUMNS[name].unit if name in COLUMNS else ""):
+        if unit := unit or UNITS.get(name):
             found[name] = unit
     return found
 

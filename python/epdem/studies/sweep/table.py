@@ -13,7 +13,8 @@ from ...case.scene import parse
 from ...case.units import to_si
 from ...impacts.comparison import UNITS
 from ...scenes.checks import CHECKS
-from ...scenes.columns import COLUMNS, unit_of_load
+from ...scenes.columns import UNITS as SCENE_UNITS
+from ...scenes.columns import unit_of_load
 from ...scenes.results import SceneResults
 from . import folder as store
 from .folder import Sweep
@@ -95,5 +96,5 @@ def unit(name: str, case: Mapping[str, Any]) -> str | None:
     parts = parse(dict(case)).parts
     kinds = {m.name: MEASURES[m.kind] for m in parts.measure}
     rows = {row.name: row for row in parts.row}
-    known = kinds.get(column) or COLUMNS.get(column) or rows.get(column)
-    return known.unit or None if known else unit_of_load(column)
+    known = kinds.get(column) or rows.get(column)
+    return known.unit or None if known else SCENE_UNITS.get(column, unit_of_load(column))
