@@ -106,7 +106,7 @@ def test_a_scene_runs_again_for_what_the_engine_reads_alone(host, tmp_path, monk
 
     assert again(scene()) == 1
     first = (tmp_path / "out/results.h5").read_bytes()
-    assert again(scene()) == 0 and (tmp_path / "out/results.h5").read_bytes() == first, "nothing is written anew"
+    assert again(scene()) == 0 and (tmp_path / "out/results.h5").read_bytes() == first, "the file has the same bytes"
     assert again(scene(case={"title": "Another title"})) == 0
     assert again(scene(output={"rows": 10, "particles": 2, "color": "z"})) == 0
     assert again(scene(scene={"measure": [HEIGHT]})) == 0 and stored("measures")

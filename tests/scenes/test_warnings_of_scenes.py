@@ -155,18 +155,18 @@ def test_a_way_that_a_phase_is_too_short_for_is_named():
 
 
 @pytest.mark.parametrize(
-    ("law", "words"),
+    ("law", "warned"),
     [
-        ({"name": "cavity", "finite_strain": True, "compaction": True}, None),
-        ({"name": "thornton"}, "has 0.44 to 0.95 times the pressure of finite elements"),
-        ({"name": "cavity"}, "has 0.80 to 1.23 times"),
-        ({"name": "cavity", "finite_strain": True}, "has 0.55 to 0.98 times"),
-        ({"name": "hertz"}, "is not compared with finite elements"),
+        ({"name": "cavity", "finite_strain": True, "compaction": True}, False),
+        ({"name": "thornton"}, True),
+        ({"name": "cavity"}, True),
+        ({"name": "cavity", "finite_strain": True}, True),
+        ({"name": "hertz"}, True),
     ],
 )
-def test_a_press_with_another_law_says_first_what_its_pressure_is(law, words):
+def test_a_press_with_another_law_says_first_that_its_pressures_deviate(law, warned):
     data = read_toml(CASES / "compaction_powder.toml")
     found = planned_warnings(plan(parse(data | {"law": law})))
-    assert ("law.name" in "".join(found[:1])) == bool(words) and (words or "") in "".join(found)
+    assert ("are not those of finite elements" in "".join(found[:1])) == warned
     loose = data | {"law": law, "scene": data["scene"] | {"height": "1.3 mm"}}  # relative density 0.60
     assert not any("law.name" in text for text in planned_warnings(plan(parse(loose))))

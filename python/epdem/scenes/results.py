@@ -40,18 +40,6 @@ class SceneResults:
     decks: dict[str, str] = field(default_factory=dict)
     files: dict[str, bytes] | None = field(default_factory=dict)
 
-    def equals(self, other: "SceneResults") -> bool:
-        """Whether a file of the other results holds these."""
-        if self.tables.keys() != other.tables.keys():
-            return False
-        texts = [(x.case_text, x.attributes, x.decks, x.files) for x in (self, other)]
-        return texts[0] == texts[1] and all(
-            table.columns.equals(other.tables[name].columns)
-            and table.astype(str).equals(other.tables[name].astype(str))
-            for name, table in self.tables.items()
-            if table is not other.tables[name]
-        )
-
     def __getattr__(self, name: str) -> pd.DataFrame:
         tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
         if name in tables:

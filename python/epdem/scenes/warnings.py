@@ -22,13 +22,6 @@ SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
 ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = true"
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
-NO_FINITE_STRAIN = 1e6  # the parameter of a law without finite_strain
-PRESSURES = {  # of lattices, docs/choose.md: E/Y of 30 and 120, relative density up to 0.95
-    "thornton": "0.44 to 0.95",
-    "thornton_ning": "0.44 to 0.95",
-    "cavity": "0.80 to 1.23",
-    "cavity, finite_strain": "0.55 to 0.98",
-}
 PRESSED = "pressures and springback deviate from finite elements (docs/choose.md, Pressing)"
 MISSED = 0.01  # of the duration of a phase
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
@@ -44,13 +37,9 @@ def _law(p: ScenePlan) -> list[str]:
     """A law that does not have the pressure of a pressed bed."""
     if p.model.compaction or not any(bed.solid_height > LOOSE * bed.height for bed in p.beds):
         return []
-    name = p.model.law
-    strain = p.model.parameters.get("finite_strain", NO_FINITE_STRAIN) < NO_FINITE_STRAIN
-    known = PRESSURES.get(f"{name}, finite_strain" if strain else name)
-    text = f"has {known} times the pressure of finite elements" if known else "is not compared with finite elements"
     return [
-        f"law.name = {name!r}: a bed that is pressed with this law {text} (docs/choose.md, Pressing); take law.name = "
-        "'cavity' with finite_strain = true and compaction = true"
+        f"law.name = {p.model.law!r}: the pressures of a bed that is pressed with this law are not those of finite "
+        "elements (docs/choose.md, Pressing); take law.name = 'cavity' with finite_strain = true and compaction = true"
     ]
 
 
