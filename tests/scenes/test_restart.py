@@ -164,7 +164,8 @@ def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(case, e
     a, b = (results.read(tmp_path / name / "results.h5") for name in ("whole", "parts"))
     assert set(a.tables) == set(b.tables)
     stages = {"stages"} if whole.plan.scene.stages else set()
-    assert set(a.tables) == {"rows", "particles", "contacts", "energy_balance", "checks", "phases"} | stages
+    measured = {"measures", "histograms"} if whole.plan.scene.measure else set()
+    assert set(a.tables) == {"rows", "particles", "contacts", "energy_balance", "checks", "phases"} | stages | measured
     for name, table in a.tables.items():
         for column in table:
             other = b.tables[name][column]
