@@ -122,7 +122,9 @@ def test_finite_strain_is_said_once_by_the_largest_contact_radius_of_the_rows(la
     contacts = {"step": [5, 5], "wall": ["", "floor"], "i": [1, 1], "j": [2, 0], "delta_max": radius**2 / R_star}
     tables = {
         "rows": pd.DataFrame({"largest_radius_ratio": [0.0, largest]}),
-        "particles": pd.DataFrame({"id": [1, 2], "radius": 1e-3, "mass": 1e-5, "type": 1}),
+        "particles": pd.DataFrame(
+            {"step": 5, "id": [1, 2], "radius": 1e-3, "mass": 1e-5, "type": 1, "x": 0.0, "y": 0.0, "z": 0.0}
+        ),
         "contacts": pd.DataFrame(contacts | {"dent_radius": radius if yields else 0.0}),
     }
     found = measured_warnings(p, tables)
