@@ -15,6 +15,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
+from epdem.engines.yade import deck as yade_deck
 from epdem.errors import CaseError
 from epdem.scenes import report, stages
 from epdem.scenes.columns import units
@@ -245,10 +246,10 @@ def of_length(factor):
 def test_a_punch_that_liggghts_takes_for_an_empty_mesh_is_refused_in_a_sentence():
     """LIGGGHTS 3.8 refuses meshes whose largest and smallest coordinate differ by less than 1e-4 (m, here)."""
     smallest = 1e-4 / (HEIGHT + 0.5 * SIDE)  # the punch at the start reaches from x = -side/2 to z = height
-    scene_engine("liggghts").check_scene(of_length(1.01 * smallest))
+    scene_engine("liggghts").check(of_length(1.01 * smallest))
     with pytest.raises(CaseError, match=r"scene.wall.punch: its coordinates span 9.9e-05 m, .* lengths 1000 times"):
-        scene_engine("liggghts").check_scene(of_length(0.99 * smallest))
-    scene_engine("yade").check_scene(of_length(0.99 * smallest))
+        scene_engine("liggghts").check(of_length(0.99 * smallest))
+    yade_deck.check(of_length(0.99 * smallest))
 
 
 @pytest.mark.parametrize(("data", "words"), REFUSED, ids=[words for _, words in REFUSED])
