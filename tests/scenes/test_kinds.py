@@ -59,8 +59,7 @@ def test_a_kind_of_a_user_runs_and_its_torque_does_the_work(engine, mill):
     rows, balance = outcome.results.rows, outcome.results.energy_balance
     assert outcome.passed and "torque" in rows and "shell_torque_y" not in rows
     work = np.cumsum(-6.0 * rows["torque"] * np.diff(rows["time"], prepend=0.0))
-    exact = 2e-3 if engine == "yade" else 1e-9  # a facet's velocity in YADE is not of the time of its force
-    assert balance["work"].iloc[-1] == pytest.approx(work.iloc[-1], rel=exact)
+    assert balance["work"].iloc[-1] == pytest.approx(work.iloc[-1], rel=1e-9)
     assert np.abs(rows["torque"]).max() > 0
     page = write_scene_page(outcome).read_text()
     assert "Key figure: torque against time" in page and "A scene of kind mill" in page

@@ -177,8 +177,12 @@ class Recorder:
         """The power of moving walls [W], then force [N] and torque [N m] on each wall, in the order of the names."""
         values = []
         if self.moving:
-            states = [(k, O.bodies[k].state) for k in self.moving]
-            values.append(-sum(O.forces.f(k).dot(s.vel) + O.forces.t(k).dot(s.angVel) for k, s in states))
+            power = 0.0
+            for k in self.moving:
+                s = O.bodies[k].state
+                velocity = s.vel - 0.5 * O.dt * s.angVel.cross(s.vel)  # now; a turn's is the mean of the coming step
+                power -= O.forces.f(k).dot(velocity) + O.forces.t(k).dot(s.angVel)
+            values.append(power)
         for _, bodies, origin in self.loads:
             values += [sumForces(bodies, axis) for axis in AXES]
             if origin is not None:
