@@ -23,7 +23,7 @@ Tool = TypeVar("Tool")
 
 
 def silent(text: str) -> None:
-    """Progress that nobody sees."""
+    """Discard progress."""
 
 
 @dataclass(frozen=True)
