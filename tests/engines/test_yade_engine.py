@@ -177,7 +177,7 @@ def test_the_module_is_for_the_program_that_make_yade_was_called_with(built_for,
     monkeypatch.setattr(launcher, "module", NATIVE)
     tool = engine("yade")
     assert tool.classes == (built_for == "the program")
-    assert ("epdem_yade" if tool.classes else "C library") in tool.version()
+    assert ("epdem_yade" if tool.classes else "C library") in launcher.version()
 
 
 @pytest.mark.parametrize("way", FAKE)

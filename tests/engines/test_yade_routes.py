@@ -98,7 +98,7 @@ def test_a_case_that_needs_the_classes_passes_its_checks(case, tmp_path):
 
 def test_doctor_and_results_say_which_laws_yade_runs(tmp_path, monkeypatch):
     (found,) = (f for f in doctor.examine() if f.part == "engine yade")
-    assert "epdem_yade " in found.detail
+    assert "epdem_yade, epdem " in found.detail
     monkeypatch.setattr(launcher, "module", lambda: None)
     (found,) = (f for f in doctor.examine() if f.part == "engine yade")
     assert "C library" in found.detail and "make yade" in found.detail
