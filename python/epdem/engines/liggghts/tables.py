@@ -43,11 +43,9 @@ def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajector
 
 
 def _frame(path: Path, names: list[str]) -> pd.DataFrame:
-    """A binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
-    found = dump.frames(path)
-    if len(found) != 1 or found[0][1].shape[1] != len(names):
-        raise EngineError(f"{path}: not one frame of {len(names)} columns; run the case again")
-    return pd.DataFrame(found[0][1], columns=names)
+    """A binary dump of one frame, sorted by id. Raises EngineError if it is cut, ValueError if it has other columns."""
+    ((_, rows),) = dump.frames(path)
+    return pd.DataFrame(rows, columns=names)
 
 
 def _local(path: Path, names: list[str]) -> pd.DataFrame:
