@@ -102,11 +102,10 @@ def test_frames_and_rows_of_scenes(tmp_path):
     raw = pd.DataFrame([numbers | {"wall": ""} | dict.fromkeys(columns.FORCE, 0.0)])
     with says("the contacts of step 1250 are damaged: no such spheres; run the case again"):
         columns.complete(p, raw, whole, tmp_path)
-    shutil.copy(STORED / "hopper/particles.2000.bin", tmp_path / "two.bin")
-    with (tmp_path / "two.bin").open("ab") as stream:
-        stream.write((STORED / "hopper/particles.2000.bin").read_bytes())
-    with says("two.bin: not one frame of 10 columns; run the case again"):
-        scene_tables._frame(tmp_path / "two.bin", list("0123456789"))
+    twice = tmp_path / "run/particles.1250.bin"
+    twice.write_bytes(2 * twice.read_bytes())
+    with says(r"particles.1250.bin: incomplete \(.*\); run the case again"):
+        scene_tables.particles(Frames(p, tmp_path / "run", scene_tables.kinds(p)))
 
 
 def test_programs_that_are_not_there(tmp_path, monkeypatch):
