@@ -32,8 +32,7 @@ SMALL = {
         "box": ["0.5 mm", "0.5 mm", "0.8 mm"],
         "count": 60,
         "height": "0.3 mm",
-        "speed": "3 m/s",
-        "unload_speed": "3 m/s",
+        "speed": "3 m/s",  # and a tenth of it back: at 3 m/s the bed, which is slower, gives no force
     },
     "hopper": {
         "count": 150,
