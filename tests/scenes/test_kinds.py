@@ -110,6 +110,7 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
     [
         ("[keys]", "[key]", r"mill.toml.j2: \[keys\] at the head has a mistake: 'keys'"),
         ("{% set r = diameter / 2 %}", "", "scene of kind './mill.toml.j2': 'r' is undefined"),
+        ("{% set r = diameter / 2 %}", "{% set r = ''.__class__.__mro__ %}", "access to attribute '__class__' of"),
         ('kind = "cylinder"', 'kind = "tube"', "scene of kind './mill.toml.j2': wall.0.kind = 'tube', must be one of"),
         ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
         ('wall = "shell"', 'wall = "hull"', "row.torque.wall = 'hull' is no wall that has a torque"),

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 import jinja2
+from jinja2.sandbox import SandboxedEnvironment
 from pydantic import Field, ValidationError, ValidationInfo, create_model, model_validator
 from pydantic_core import PydanticKnownError
 
@@ -155,7 +156,7 @@ def _as_toml(value: Any) -> Any:
 
 @cache  # compiling takes far longer than filling
 def _template(body: str) -> jinja2.Template:
-    env = jinja2.Environment(**OPTIONS, finalize=_as_toml)
+    env = SandboxedEnvironment(**OPTIONS, finalize=_as_toml)  # a kind may come from other people
     env.globals.update(FUNCTIONS)
     return env.from_string(body)
 
