@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the programs print: rows, ends of phases, and the time of the loop."""
+"""Output of the programs: rows, ends of phases, and the time of the loop."""
 
 import math
 import re

@@ -90,16 +90,17 @@ def check_features(tool: ImpactEngine, x: Experiment) -> None:
         )
 
 
-def check_plan(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
-    """Raise CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
+def check_plan(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> list[str]:
+    """Sentences on what `tool` leaves out or replaces. `prediction` belongs to the plan's experiment.
 
-    `prediction` belongs to the plan's experiment.
+    Raises CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
     """
     refuse_ranks(tool, ranks)
-    tool.check(plan)
+    notes = tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if Feature.POSITIONS in tool.features and (why := not_representable(plan.experiment, float(overlap))):
             raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
+    return notes
 
 
 def not_representable(x: Experiment, overlap_max: float) -> str | None:

@@ -164,6 +164,11 @@ class Plan:
         return self.speed.size
 
     @property
+    def spheres(self) -> int:
+        """Number of spheres of all impacts: the bodies, and the targets unless they are planes."""
+        return self.n if math.isinf(self.experiment.target.radius) else 2 * self.n
+
+    @property
     def summary(self) -> str:
         """One line for the head of a deck."""
         speeds, law = self.experiment.speed.size, self.experiment.law.name

@@ -67,7 +67,7 @@ def records(rows: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def document(outcome: Outcome) -> dict[str, object]:
-    """What `epdem run --json` prints."""
+    """The JSON document of a run."""
     return {
         "case": outcome.case.name,
         "passed": outcome.passed,

@@ -119,13 +119,15 @@ def prepare(
         experiments = [experiment(case, law) for law in dict.fromkeys(laws or (None,))]
         predictions = {x.law.name: predict(x) for x in experiments}
         plans = {x.law.name: plan(x, predictions[x.law.name]) for x in experiments}
+        warnings = case_warnings(case)
         for law, p in plans.items():
+            warnings += predictions[law].warnings
             for tool in tools:
-                check_plan(tool, p, predictions[law], ranks=ranks)
+                warnings += [f"{tool.name}: {note}" for note in check_plan(tool, p, predictions[law], ranks=ranks)]
     steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
     how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
     results = store.Results(case_text=loaded.text)
-    return Outcome(case, folder, results, predictions, plans, ranks, how, warnings=case_warnings(case))
+    return Outcome(case, folder, results, predictions, plans, ranks, how, warnings=warnings)
 
 
 def fill(
@@ -143,8 +145,6 @@ def fill(
     results.attributes |= {f"version_{name}": version for name, version in versions.items()}
     for law, p in outcome.plans.items():
         prediction = outcome.predictions[law]
-        outcome.warnings += prediction.warnings
-        outcome.warnings += [f"{tool.name}: {note}" for tool in tools for note in tool.check(p)]
         results.predictions[law] = prediction.table()
         for tool in tools:
             key = f"{law}/{tool.name}"

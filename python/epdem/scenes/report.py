@@ -287,7 +287,7 @@ def key(p: ScenePlan, tables: Tables) -> list[Chart]:
 
 
 def document(outcome: SceneOutcome) -> dict[str, object]:
-    """What `epdem run --json` prints of a scene: of the measures the last frame, or row of a force or torque."""
+    """The JSON document of a run of a scene; a measure has its last frame, or of a force or torque its last row."""
     tables, measured = outcome.results.tables, list[dict[str, object]]()
     if outcome.plan.scene.measure:
         row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The dumps of impacts and the tables of a scene from LAMMPS's files. Only this module reads their formats."""
 
-import math
 from functools import partial
 from pathlib import Path
 
@@ -32,10 +31,9 @@ def impact_frames(path: Path, frames: int, bodies: int) -> np.ndarray:
 
 def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force and approach velocity from the dumps of impacts. Raises EngineError if samples are missing."""
-    bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
-    path = np.moveaxis(impact_frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
+    path = np.moveaxis(impact_frames(folder / PATH, plan.steps + 1, plan.spheres), 2, 0)
     place, velocity, force = path.reshape(3, -1, *path.shape[1:])
-    vx, spin = impact_frames(folder / END, 2, bodies)[-1].T if plan.experiment.oblique else (None, None)
+    vx, spin = impact_frames(folder / END, 2, plan.spheres)[-1].T if plan.experiment.oblique else (None, None)
     return impacts.trajectory(plan, place, velocity, force, seconds, vx, spin)
 
 

@@ -74,7 +74,7 @@ class Executable:
 
 
 def version(path: Path | None = None) -> str:
-    """Name and version of a LIGGGHTS, as "LIGGGHTS-PUBLIC 3.8.0"; None: of ours. Raises EngineError."""
+    """Name and version of a LIGGGHTS, as "LIGGGHTS-PUBLIC 3.8.0"; None: the one of epdem. Raises EngineError."""
     path = path or paths.launcher()
     return (_version(_help(path)) if path else "") or "LIGGGHTS (version unknown)"
 

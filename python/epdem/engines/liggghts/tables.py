@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The trajectory of impacts and the tables of a scene from LIGGGHTS's files, whose formats are in `dump`."""
 
-import math
 import re
 from functools import partial
 from pathlib import Path
@@ -33,9 +32,9 @@ def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajector
     path = folder / PATH
     try:
         place, velocity, force = np.moveaxis(dump.series(path), 2, 0)[:, None]
-        found, bodies = place.shape[1:], plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
-        if found != (plan.steps + 1, bodies):
-            raise ValueError(f"{found[0]} frames of {found[1]} bodies, expected {plan.steps + 1} of {bodies}")
+        found = place.shape[1:]
+        if found != (plan.steps + 1, plan.spheres):
+            raise ValueError(f"{found[0]} frames of {found[1]} bodies, expected {plan.steps + 1} of {plan.spheres}")
         vx, spin = dump.series(folder / END)[-1].T if plan.experiment.oblique else (None, None)
     except (ValueError, IndexError) as error:
         raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {OUT} beside it") from None
@@ -146,7 +145,7 @@ def _stresses(p: ScenePlan, wall: str, path: Path) -> pd.DataFrame:
     count = len(fields["area"])
     if count != len(p.triangles[wall]):
         raise EngineError(f"{path}: {count} triangles, expected {len(p.triangles[wall])}")
-    columns = {ours: fields.get(theirs, np.zeros(count)) for theirs, ours in COLUMNS.items()}
+    columns = {column: fields.get(field, np.zeros(count)) for field, column in COLUMNS.items()}
     return pd.DataFrame({"wall": wall} | columns)
 
 

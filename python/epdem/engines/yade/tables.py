@@ -2,7 +2,6 @@
 """The trajectory of impacts and the tables of a scene from YADE's files. Only this module reads their formats."""
 
 from functools import partial
-from math import isinf
 from pathlib import Path
 
 import numpy as np
@@ -27,8 +26,8 @@ CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.FORCE, *column
 
 def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
-    path, bodies = folder / "path.bin", plan.n if isinf(plan.experiment.target.radius) else 2 * plan.n
-    expected = (plan.steps + 2, 3, len(axes(plan)), bodies)
+    path = folder / "path.bin"
+    expected = (plan.steps + 2, 3, len(axes(plan)), plan.spheres)
     tangential = spin = None
     try:
         with path.open("rb") as file:

@@ -7,6 +7,7 @@ mdr        a sphere on a rigid flat: the modulus that makes E/(1-nu^2) the case'
 """
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,27 +25,27 @@ STIFFENING, DEPTH, EXPONENT = 5.0, 0.05, 1.5  # k_p/k_1 and k_2/k_1; phi_f; n
 TIGHT: dict[str, Any] = {"method": "DOP853", "rtol": 1e-10}
 
 
-class OtherLaw:
+class OtherLaw(ABC):
     """A law that unloads along another line than it loads: forces [N] at overlaps x [m] that reached `top`."""
 
     note: str  # the rule for its numbers
 
     @classmethod
+    @abstractmethod
     def of(cls, x: Experiment) -> Self:
         """With the numbers for a case. Raises CaseError for a case that the model cannot represent."""
-        raise NotImplementedError
 
+    @abstractmethod
     def load(self, x: float) -> float:
         """Force while the overlap grows."""
-        raise NotImplementedError
 
+    @abstractmethod
     def dent(self, top: float) -> float:
         """Overlap at which the force ends."""
-        raise NotImplementedError
 
+    @abstractmethod
     def unload(self, x: float, top: float) -> float:
         """Force on the way from `top` to the dent."""
-        raise NotImplementedError
 
     def impact(self, *, m_star: float, speed: float, size: float) -> dict[str, float]:
         """An impact at `speed` [m/s] with effective mass m_star [kg]; size [m] of the bodies, for the tolerance."""
