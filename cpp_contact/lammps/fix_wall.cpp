@@ -38,6 +38,13 @@ void add_parts(Region& region, std::vector<Region*>& parts) {
   for (int k = 0; region.reglist && k < region.nregion; ++k) add_parts(*region.reglist[k], parts);
 }
 
+/// Whether a face lies at infinity (INF), where LAMMPS has no bounding box or one of 1e20.
+bool is_infinite(const Region& part) {
+  const auto far = [](double at) { return !(std::fabs(at) < 1e19); };
+  return !part.bboxflag || far(part.extent_xlo) || far(part.extent_xhi) || far(part.extent_ylo) ||
+         far(part.extent_yhi) || far(part.extent_zlo) || far(part.extent_zhi);
+}
+
 }  // namespace
 
 FixWall::FixWall(LAMMPS* lmp, int count, char** word)
@@ -60,7 +67,6 @@ void FixWall::read(int first, int count, char** word, int most) {
   most_ = most;
   stride_ = 1 + layout_.values;
   maxexchange = 1 + most_ * stride_;
-  scratch_.resize(long(most_) * stride_);
   FixWall::grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -128,7 +134,7 @@ void FixWall::choose_candidates() {
     if (!checks || is_near(i, reach_of(i) + slack))
       candidates_.push_back(i);
     else
-      count_[i] = 0;
+      held_[i].clear();
   }
   note_placement();
   candidates_valid_ = true;
@@ -139,9 +145,8 @@ void FixWall::post_force(int) {
   const bool counts = !update->setupflag;
   begin();
   if (!candidates_valid_ || (moves() && !(way() <= 0.5 * neighbor->skin))) choose_candidates();
-  std::vector<double> before;
-  std::vector<int> count_before;
-  if (!counts) before = held_, count_before = count_;
+  std::vector<std::vector<double>> before;
+  if (!counts) before = held_;
   pass_.dt = counts ? update->dt : no_time;
   pass_.repeats = !counts;
   pass_.work = counts && pair_->energies();
@@ -190,9 +195,7 @@ void FixWall::post_force(int) {
   local_row_.resize(std::max<size_t>(local_row_.size(), size_local_rows));
   for (int k = 0; k < size_local_rows; ++k) local_row_[k] = local_.data() + local_columns * k;
   array_local = local_row_.data();
-  if (counts) return;
-  held_.swap(before);
-  count_.swap(count_before);
+  if (!counts) held_.swap(before);
 }
 
 /// Across a gap, only spheres are in contact that are attached, or whose growth closes the gap.
@@ -203,7 +206,7 @@ void FixWall::drop_parted(int i, std::vector<Contact>& found) {
 
 bool FixWall::stands(int i, const Contact& contact) {
   const double* history = nullptr;
-  for (int k = 0; k < count_[i]; ++k)
+  for (int k = 0; k < count(i); ++k)
     if (record(i, k)[0] == contact.part) history = record(i, k) + 1;
   const Gap gap{contact.distance * contact.distance, atom->radius[i], 0.0, sums_of(pass_.sums, i), {}};
   return exists(layout_.gap, history, gap, pass_.repeats);
@@ -211,24 +214,20 @@ bool FixWall::stands(int i, const Contact& contact) {
 
 /// Whether the records of a sphere have the order of its contacts.
 bool FixWall::has_records_of(int i, const std::vector<Contact>& found) {
-  const int count = count_[i];
-  if (count != static_cast<int>(found.size())) return false;
-  for (int k = 0; k < count; ++k)
+  if (count(i) != static_cast<int>(found.size())) return false;
+  for (int k = 0; k < count(i); ++k)
     if (record(i, k)[0] != found[k].part) return false;
   return true;
 }
 
 /// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.
 void FixWall::keep_records(int i, const std::vector<Contact>& found) {
-  const int known = count_[i];
-  count_[i] = static_cast<int>(found.size());
-  if (found.empty()) return;
-  std::copy_n(record(i, 0), long(known) * stride_, scratch_.data());
+  scratch_.swap(held_[i]);
+  held_[i].assign(found.size() * stride_, 0.0);
   for (size_t k = 0; k < found.size(); ++k) {
     double* const to = record(i, static_cast<int>(k));
-    std::fill_n(to, stride_, 0.0);
-    for (int old = 0; old < known; ++old)
-      if (scratch_[long(old) * stride_] == found[k].part) std::copy_n(&scratch_[long(old) * stride_], stride_, to);
+    for (auto old = scratch_.begin(); old != scratch_.end(); old += stride_)
+      if (*old == found[k].part) std::copy_n(old, stride_, to);
     to[0] = found[k].part;
   }
 }
@@ -294,30 +293,30 @@ double FixWall::compute_vector(int axis) {
   return total_[axis];
 }
 
-void FixWall::grow_arrays(int atoms) {
-  held_.resize(long(atoms) * most_ * stride_);
-  count_.resize(atoms);
+double FixWall::memory_usage() {
+  size_t bytes = held_.capacity() * sizeof held_[0];
+  for (const auto& held : held_) bytes += held.capacity() * sizeof(double);
+  return static_cast<double>(bytes);
 }
 
-void FixWall::copy_arrays(int from, int to, int) {
-  count_[to] = count_[from];
-  std::copy_n(record(from, 0), long(count_[from]) * stride_, record(to, 0));
-}
+void FixWall::grow_arrays(int atoms) { held_.resize(atoms); }
 
-void FixWall::set_arrays(int i) { count_[i] = 0; }
+void FixWall::copy_arrays(int from, int to, int) { held_[to] = held_[from]; }
+
+void FixWall::set_arrays(int i) { held_[i].clear(); }
 
 int FixWall::pack_exchange(int i, double* buffer) {
-  buffer[0] = count_[i];
-  return static_cast<int>(std::copy_n(record(i, 0), long(count_[i]) * stride_, buffer + 1) - buffer);
+  buffer[0] = count(i);
+  return static_cast<int>(std::copy(held_[i].begin(), held_[i].end(), buffer + 1) - buffer);
 }
 
 int FixWall::unpack_exchange(int i, double* buffer) {
-  count_[i] = static_cast<int>(buffer[0]);
-  std::copy_n(buffer + 1, long(count_[i]) * stride_, record(i, 0));
-  return 1 + count_[i] * stride_;
+  const int size = static_cast<int>(buffer[0]) * stride_;
+  held_[i].assign(buffer + 1, buffer + 1 + size);
+  return 1 + size;
 }
 
-int FixWall::size_restart(int i) { return 2 + count_[i] * stride_; }
+int FixWall::size_restart(int i) { return 2 + static_cast<int>(held_[i].size()); }
 
 int FixWall::pack_restart(int i, double* buffer) {
   buffer[0] = size_restart(i);
@@ -469,7 +468,7 @@ bool FixWallRegion::is_near(int i, double distance) {
     if (part->reglist) continue;
     const int side = part->interior, open = part->openflag;
     part->openflag = 0;
-    bool near = open && !(part->match(x[0], x[1], x[2]) == side);
+    bool near = open && is_infinite(*part) && !(part->match(x[0], x[1], x[2]) == side);
     part->openflag = open;
     for (part->interior = 0; part->interior < 2; ++part->interior)
       near |= part->surface(x[0], x[1], x[2], distance) > 0;

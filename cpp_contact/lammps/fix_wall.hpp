@@ -39,7 +39,7 @@ class FixWall : public LAMMPS_NS::Fix {
   void unpack_restart(int i, int nth) override;
   int size_restart(int i) override;
   int maxsize_restart() override { return 2 + most_ * stride_; }
-  double memory_usage() override { return static_cast<double>(held_.capacity() * sizeof(double)); }
+  double memory_usage() override;
 
  protected:
   /// A contact of a sphere with one part of the wall.
@@ -71,7 +71,8 @@ class FixWall : public LAMMPS_NS::Fix {
   const std::string place_;
 
  private:
-  double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
+  double* record(int i, int k) { return held_[i].data() + long(k) * stride_; }
+  int count(int i) const { return static_cast<int>(held_[i].size()) / stride_; }
   std::vector<int> types_of_group() const;
   void choose_candidates();
   void drop_parted(int i, std::vector<Contact>& found);
@@ -86,8 +87,7 @@ class FixWall : public LAMMPS_NS::Fix {
   int most_ = 0, stride_ = 0;
   double reach_ = 0.0;  // beyond the radius [length]
   double reach_factor_ = 1.0;
-  std::vector<double> held_;  // `most` records for each atom: number of the part, history of the contact
-  std::vector<int> count_;    // of records in use, for each atom
+  std::vector<std::vector<double>> held_;  // by atom, a record for each contact: number of the part, history
   std::vector<int> candidates_;
   bool candidates_valid_ = false;
   PairEp* pair_ = nullptr;

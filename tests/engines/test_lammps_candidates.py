@@ -5,9 +5,14 @@ With `neigh_modify delay 1`, LAMMPS does not test in each step whether new neigh
 spheres.
 """
 
+import os
+import subprocess
+
 import numpy as np
 import pytest
 from lammps_decks import column, needs_lammps, run
+
+from epdem.engines.lammps import launcher
 
 pytestmark = needs_lammps
 
@@ -68,3 +73,37 @@ def test_candidates_give_the_bits_of_all_spheres(what, tmp_path):
     assert np.count_nonzero(np.abs(forces).max(axis=0)) > 10, "too few impacts"
     for value in ("f_w[1]", "f_w[2]", "f_w[3]", "KinEng"):
         assert np.array_equal(column(some, value), column(every, value)), value
+
+
+def peak_memory(walls, folder):
+    """Peak memory [byte] of a run of 200,000 spheres above planes that no sphere touches."""
+    law = f"{LAW.replace('thornton', 'cavity')} compaction on"
+    planes = "".join(f"fix w{k} all wall/ep zplane {-1 - k} NULL {law}\n" for k in range(walls))
+    folder.mkdir()
+    (folder / "in.deck").write_text(f"""units si
+atom_style sphere
+comm_modify vel yes
+newton off
+boundary f f f
+region box block -1 100 -1 100 -10 20 units box
+create_box 1 box
+region inner block 0 99.5 0 99.5 0 19.5 units box
+lattice sc 1.0
+create_atoms 1 region inner
+set group all diameter 0.4 density 2500
+pair_style ep
+pair_coeff 1 1 {law}
+neighbor 0.1 bin
+{planes}timestep 1e-6
+run 1
+""")
+    command = [str(launcher.program()), "-in", "in.deck", "-log", "none", "-screen", "none"]
+    run = subprocess.Popen(command, cwd=folder, env=launcher.environment())
+    _, status, usage = os.wait4(run.pid, 0)
+    assert status == 0
+    return 1024 * usage.ru_maxrss
+
+
+def test_a_wall_without_contacts_takes_less_than_40_bytes_of_a_sphere(tmp_path):
+    four_walls = peak_memory(5, tmp_path / "5") - peak_memory(1, tmp_path / "1")
+    assert four_walls < 4 * 40 * 200_000
