@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "fix.h"
+#include "compute.h"
 #include "host.hpp"
 #include "memory.h"
 #include "modify.h"
@@ -18,33 +18,32 @@ namespace loop {
 struct LoopState;
 }
 
-/// A fix that does nothing: it begins and ends with its simulation.
-class Simulation : public LAMMPS_NS::Fix {
+/// A compute that does nothing: it begins and ends with its simulation. Not a fix: a fix that LIGGGHTS constructs takes
+/// the next place of the list of fixes, whatever its constructor adds there.
+class Simulation : public LAMMPS_NS::Compute {
  public:
   /// nullptr: no call of `of` came before.
   static Simulation* find(const LAMMPS_NS::LAMMPS* lmp) {
     const LAMMPS_NS::Modify& m = *lmp->modify;
-    for (int k = 0; k < m.nfix; ++k)
-      if (m.fix[k] && std::strcmp(m.fix[k]->id, name) == 0) return static_cast<Simulation*>(m.fix[k]);
+    for (int k = 0; k < m.ncompute; ++k)
+      if (std::strcmp(m.compute[k]->id, name) == 0) return static_cast<Simulation*>(m.compute[k]);
     return nullptr;
   }
 
-  /// Not while LIGGGHTS constructs a fix, whose place in the list would be taken.
   static Simulation& of(LAMMPS_NS::LAMMPS* lmp) {
     if (Simulation* const known = find(lmp)) return *known;
     LAMMPS_NS::Modify& m = *lmp->modify;
-    if (m.nfix == m.maxfix) {
-      m.maxfix += 4;
-      m.fix = static_cast<Fix**>(lmp->memory->srealloc(m.fix, m.maxfix * sizeof(Fix*), "modify:fix"));
-      lmp->memory->grow(m.fmask, m.maxfix, "modify:fmask");
+    if (m.ncompute == m.maxcompute) {
+      m.maxcompute += 4;
+      m.compute =
+          static_cast<Compute**>(lmp->memory->srealloc(m.compute, m.maxcompute * sizeof(Compute*), "modify:compute"));
     }
-    auto* const made = new Simulation(lmp);  // LIGGGHTS deletes its fixes; add_fix would want a box
-    m.fix[m.nfix] = made;
-    m.fmask[m.nfix++] = 0;
+    auto* const made = new Simulation(lmp, 0);  // LIGGGHTS deletes its computes; add_compute takes a registered style
+    m.compute[m.ncompute++] = made;
     return *made;
   }
 
-  int setmask() override { return 0; }
+  void init() override {}
 
   /// Whether this text is new: pair styles, walls and runs say the same.
   bool is_new(const std::string& text) { return said_.insert(text).second; }
@@ -55,7 +54,7 @@ class Simulation : public LAMMPS_NS::Fix {
   static constexpr const char* name = "epdem_simulation";
   static constexpr const char* words[] = {name, "all", "epdem"};
 
-  explicit Simulation(LAMMPS_NS::LAMMPS* lmp) : Fix(lmp, 3, const_cast<char**>(words)) {}
+  Simulation(LAMMPS_NS::LAMMPS* lmp, int first) : Compute(lmp, first, 3, const_cast<char**>(words)) {}
 
   std::set<std::string> said_;
 };

@@ -32,7 +32,7 @@ struct LoopState {
   bool deletes_atoms = false;     // whether delete_atoms runs
 };
 
-/// The state of a simulation, new at the first call. Not while LIGGGHTS constructs a fix.
+/// The state of a simulation, new at the first call.
 LoopState& state_of(LAMMPS_NS::LAMMPS* lmp);
 
 /// The same where our functions may take the place of LIGGGHTS's; nullptr: LIGGGHTS's run.
