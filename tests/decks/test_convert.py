@@ -218,3 +218,12 @@ def test_walls_that_lose_their_contacts_in_a_restart_are_named(tmp_path):
     (said,) = check(RESTART.format(begin=begin, wall="bottom"), place)
     assert "bed.restart holds the contacts of walls floor, and walls bottom of the deck begin without any" in said
     assert check(RESTART.format(begin=begin, wall="bottom"), tmp_path / "elsewhere/next.in") == []
+
+
+def test_a_wall_that_is_defined_again_loses_its_dents():
+    wall = "fix lid all wall/gran model {model} tangential history primitive type 1 zplane 0.1\n"
+    plastic = wall.format(model="ep/thornton") + "run 100\nunfix lid\n"
+    (said,) = check(plastic + wall.format(model="ep/thornton"), "my.in")
+    assert said.startswith("my.in, line 4: wall lid is defined a second time: its contacts begin without dents")
+    assert check(plastic, "my.in") == []
+    assert check(2 * wall.format(model="hertz"), "my.in") == []

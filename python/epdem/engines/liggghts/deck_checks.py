@@ -32,6 +32,9 @@ class _Deck:
     steps: list[tuple[str, float]] = field(default_factory=list)
     known: dict[str, str] = field(default_factory=dict)  # variables with a plain value
     walls: list[str] = field(default_factory=list)
+    renewed: list[tuple[str, str]] = field(
+        default_factory=list
+    )  # plastic walls without a mesh that a deck defines again
     restarts: list[tuple[str, str]] = field(default_factory=list)
 
     def number(self, word: str) -> float:
@@ -60,7 +63,10 @@ def _read(text: str, place: Path) -> _Deck:
                 deck.models.append((where, rest))
             case ["fix", name, _, "wall/gran", *rest]:
                 deck.models.append((where, rest))
-                deck.walls += [name] if "primitive" in rest else []
+                if "primitive" in rest:
+                    if name in deck.walls and _is_plastic(rest):
+                        deck.renewed.append((where, name))
+                    deck.walls.append(name)
             case ["read_restart", name, *_]:
                 deck.restarts.append((where, name))
             case ["timestep", value]:
@@ -82,6 +88,10 @@ def _model(words: list[str]) -> str:
     return words[words.index("model") + 1] if "model" in words[:-1] else ""
 
 
+def _is_plastic(words: list[str]) -> bool:
+    return _model(words) == HYSTERESIS or _model(words).startswith("ep/")
+
+
 def check(text: str, place: Path) -> list[str]:
     """A sentence for each input of the deck `text` that is probably wrong; `place` names the deck."""
     deck = _read(text, place)
@@ -91,6 +101,7 @@ def check(text: str, place: Path) -> list[str]:
         *_restitution(deck),
         *_steps(deck),
         *_histories(deck, Path(place).parent),
+        *_renewed_walls(deck),
     ]
 
 
@@ -182,3 +193,12 @@ def _histories(deck: _Deck, folder: Path) -> Iterator[str]:
                 f"{where}: {name} holds the contacts of walls {', '.join(lost)}, and walls {', '.join(new)} of the "
                 "deck begin without any, in silence; give walls the ids that they had when the file was written"
             )
+
+
+def _renewed_walls(deck: _Deck) -> Iterator[str]:
+    """Walls whose second definition deletes the dents of their contacts."""
+    for where, name in deck.renewed:
+        yield (
+            f"{where}: wall {name} is defined a second time: its contacts begin without dents, and a pressed contact "
+            "pushes with the force of a first load; move the wall instead, or define it once before the first run"
+        )
