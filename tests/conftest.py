@@ -18,7 +18,7 @@ settings.load_profile("epdem")
 os.environ |= {"MPIR_CVAR_CH4_PROGRESS_THROTTLE": "1", "MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT": "16"}
 
 
-def blank(chart, *, title=True):
+def blank(chart):
     """The figure of a chart with empty axes, which is saved at once."""
     from matplotlib.figure import Figure
 

@@ -103,6 +103,28 @@ def test_a_stored_result_is_used_only_while_its_inputs_are_the_same(tmp_path):
     assert run(tmp_path / "a.toml", **words).reused == []
 
 
+def test_stored_runs_of_other_laws_stay_while_their_numbers_are_those_of_the_case(tmp_path):
+    """A title, a source or a tolerance is no input; other speeds are. The case judges what is stored."""
+    case, out = tmp_path / "a.toml", tmp_path / "out"
+    text = STEEL.read_text().replace("count = 32", "count = 3").replace("e_n = 1e-4", "e_n = 1e-2")
+    for changed, kept, passed in (
+        (text, True, True),
+        (text.replace('title = "', 'title = "A new '), True, True),
+        (text.replace('source = "', 'source = "A new '), True, True),
+        (text.replace("e_n = 1e-2", "e_n = 1e-12"), True, False),
+        (text.replace('"150 m/s"', '"140 m/s"'), False, True),
+    ):
+        case.write_text(text)
+        run(case, engines=[engine("embedded")], laws=["thornton", "johnson"], out=out)
+        case.write_text(changed)
+        run(case, engines=[engine("embedded")], laws=["thornton"], out=out)
+        found = store.read(out / "results.h5")
+        laws = {"thornton", "johnson"} if kept else {"thornton"}
+        assert {key.split("/")[0] for key in found.runs} == set(found.predictions) == laws
+        assert set(found.comparison["law"]) == laws and found.case_text == changed
+        assert found.comparison.groupby("law")["passed"].all().to_dict() == dict.fromkeys(laws, passed)
+
+
 def test_a_write_that_fails_leaves_the_old_results(tmp_path):
     path = tmp_path / "results.h5"
     store.write(path, store.Results("one"))

@@ -127,7 +127,7 @@ def test_the_time_of_the_bed_counts_the_steps_of_each_phase(tmp_path):
 def test_a_wall_is_drawn_where_it_is_in_the_last_frame(tmp_path, monkeypatch):
     """A plate sinks 2 mm in a phase of 20 ms; the frame at half of it shows 1 mm."""
     shown = []
-    monkeypatch.setattr(pictures, "_draw_walls", lambda axis, p, walls, phase, front: shown.append(walls["plate"]))
+    monkeypatch.setattr(pictures, "_draw_walls", lambda axis, walls, front: shown.append(walls[0][0]))
     move = {"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
     phase = {"name": "sink", "duration": "20 ms", "move": [move]}
     p = plan(parse(parts(wall=[PLATE], fill=[BED], phase=[phase])))

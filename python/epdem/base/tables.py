@@ -103,6 +103,16 @@ def read_table(group: h5py.Group) -> pd.DataFrame:
     return table
 
 
+def same(one: object, other: object) -> bool:
+    """Whether two objects, mappings of objects or tables are equal, of tables columns and types, too."""
+    if isinstance(one, pd.DataFrame):
+        return isinstance(other, pd.DataFrame) and bool(one.equals(other))
+    if isinstance(one, Mapping):
+        there = isinstance(other, Mapping) and one.keys() == other.keys()
+        return there and all(same(value, other[name]) for name, value in one.items())  # type: ignore[index]
+    return bool(one == other)
+
+
 def write_csv(path: Path, table: pd.DataFrame) -> None:
     """`table` as a CSV file, whole or not at all."""
     with atomic(path) as temporary:

@@ -106,7 +106,7 @@ def run(
 def _run_impacts(
     case: Path, *, engines: list[str], formats: tuple[str, ...], full: bool, as_json: bool, **options: Any
 ) -> typer.Exit:
-    """Run a case, draw its figure, write its page, print its table."""
+    """Run a case, write its page with the figure, print its table."""
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run
@@ -114,9 +114,8 @@ def _run_impacts(
 
     with status() as progress:
         outcome = run(case, engines=[find(name) for name in engines], progress=progress, **options)
-        progress("figure")
-        report.figure(outcome, formats)
-        write_impacts_page(outcome)
+        progress("page")
+        write_impacts_page(outcome, formats)
     return answer(report.document(outcome), report.shown(outcome, full=full), as_json, outcome.passed)
 
 

@@ -37,10 +37,9 @@ def run_scene(
         raise CaseError(f"{case}: --format csv: the scene has no table of contacts; give output.contacts")
     with bar(case.stem, "steps") as progress:
         outcome = run(case, tool, report=progress, **options)
-    report.figures(outcome, formats)
     if csv:
         write_csv(outcome.folder / "contacts.csv", outcome.results.contacts)
-    write_scene_page(outcome)
+    write_scene_page(outcome, formats)
     return answer(report.document(outcome), report.shown(outcome), as_json, outcome.passed)
 
 

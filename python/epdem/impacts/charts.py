@@ -128,6 +128,7 @@ def errors(outcome: Outcome) -> Chart:
         f"Largest error over the starting phases against impact speed, for each checked quantity: {worst}. Zeros are "
         "not on the logarithmic axis.",
         [Panel(SPEED, Axis("error, largest over phases", log=True), series)],
+        file=False,
     )
 
 
@@ -160,6 +161,7 @@ def loops(outcome: Outcome) -> list[Chart]:
             "theory. The energy between the two "
             "branches is lost.",
             [Panel(Axis("overlap / overlap_max"), force_axis, by_overlap)],
+            file=False,
         ),
         Chart(
             "force",
@@ -167,6 +169,7 @@ def loops(outcome: Outcome) -> list[Chart]:
             f"Contact force from first touch to the end of the contact at {said} m/s, as the engines compute it, "
             "over the peak and the contact time of theory.",
             [Panel(Axis("time / contact_time"), force_axis, by_time)],
+            file=False,
         ),
     ]
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Tables, JSON and the figure of a run."""
 
-import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -171,27 +170,13 @@ def shown(outcome: Outcome, *, full: bool = False) -> list[Shown]:
     return [run_table(outcome, full=full), *lines, *warned(outcome.warnings), summary(outcome)]
 
 
-def mark(outcome: Outcome, *facts: object) -> str:
-    """Hash of the inputs of the runs that an outcome holds, and of `facts`, the other contents of a picture or page."""
-    runs = sorted((key, run["inputs"]) for key, run in outcome.results.runs.items())
-    shown = (runs, outcome.case.measured, facts)
-    return hashlib.sha256(repr(shown).encode()).hexdigest()
-
-
 def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
-    """Draw e_n, restitution against speed with theory and errors, or psi if oblique; the first of its files.
-
-    Pictures of the same runs are not drawn again: the PNG file carries the hash of their inputs.
-    """
-    name, digest = ("psi" if outcome.case.impact.oblique else "e_n"), mark(outcome)
-    paths = [outcome.folder / f"{name}.{kind}" for kind in formats]
-    if all(p.exists() and p.suffix == ".png" and digest.encode() in p.read_bytes() for p in paths):
-        return paths[0]
+    """Draw e_n, restitution against speed with theory and errors, or psi if oblique; the first of its files."""
     from ..report.chart import save
     from .charts import main_chart
 
     with claim(outcome.folder, force=True):
-        return save(main_chart(outcome), outcome.folder, formats, comment=f"inputs {digest}")[0]
+        return save(main_chart(outcome), outcome.folder, formats)[0]
 
 
 def predictions(pairs: list[tuple[Experiment, Prediction]], warnings: list[str]) -> tuple[object, list[Shown]]:

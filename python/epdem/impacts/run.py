@@ -4,7 +4,9 @@
 Judgement is made anew at each call, from the tables of a run or from stored ones (jobs/stage.py).
 """
 
+import hashlib
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -92,18 +94,37 @@ def _stage(results: store.Results, key: str) -> Stage | None:
     return Stage(Inputs({}, str(about.get("inputs"))), tables, seconds)
 
 
-def _merge_earlier(results: store.Results, old: store.Results) -> store.Results:
-    if old.case_text != results.case_text:
-        return results
-    keep = [key for key in old.runs if key not in results.runs]
-    rows = old.comparison
-    rows = rows[[f"{law}/{name}" in keep for law, name in zip(rows["law"], rows["engine"], strict=True)]]
+def _plan_hash(p: Plan) -> str:
+    return hashlib.sha256(repr(_facts(p)).encode()).hexdigest()
+
+
+def _kept(outcome: Outcome, old: store.Results) -> dict[str, pd.DataFrame]:
+    """Rows of the comparison of each stored run, by key, that belongs to the case: its own numbers are those of the
+    case, whatever its title, and its rows are judged by the case."""
+    rows, case, found = old.comparison, outcome.case, dict[str, pd.DataFrame]()
+    for key, about in old.runs.items():
+        law, engine = key.split("/")
+        if old.case_text == outcome.results.case_text:
+            found[key] = rows[(rows["law"] == law) & (rows["engine"] == engine)]
+            continue
+        with suppress(CaseError):  # the case no longer has this law
+            x = experiment(case, law)
+            prediction = predict(x)
+            if about.get("plan") == _plan_hash(plan(x, prediction)):
+                found[key] = compare(engine, law, old.impacts[key], prediction, case.check)
+    return found
+
+
+def _merge_earlier(results: store.Results, old: store.Results, kept: Mapping[str, pd.DataFrame]) -> store.Results:
+    """The results and the stored ones of runs that are `kept` and not in the results."""
+    keep = [key for key in kept if key not in results.runs]
+    laws = {key.split("/")[0] for key in keep}
     return store.Results(
         results.case_text,
         old.attributes | results.attributes,
-        pd.concat([results.comparison, rows], ignore_index=True),
+        pd.concat([results.comparison, *(kept[key] for key in keep)], ignore_index=True),
         {k: old.impacts[k] for k in keep} | results.impacts,
-        old.predictions | results.predictions,
+        {k: table for k, table in old.predictions.items() if k in laws} | results.predictions,
         {k: old.runs[k] for k in keep} | results.runs,
         {k: v for k, v in old.decks.items() if k.rsplit("/", 1)[0] in keep} | results.decks,
         {k: old.paths[k] for k in keep} | results.paths,
@@ -152,7 +173,8 @@ def fill(
             stored, version = _stage(old, key) if old else None, versions[tool.name]
             stage = run_plan(p, tool, outcome.folder / key, ranks=outcome.ranks, version=version, stored=stored)
             results.impacts[key], results.paths[key] = stage.tables["impacts"], stage.tables["paths"]
-            results.runs[key] = stage.seconds | {"inputs": stage.inputs.key, "time_step": p.time_step} | outcome.how
+            about = {"inputs": stage.inputs.key, "plan": _plan_hash(p), "time_step": p.time_step}
+            results.runs[key] = stage.seconds | about | outcome.how
             decks = {Path(name).name: text for name, text in stage.inputs.files.items() if not name.endswith(".data")}
             results.decks |= {f"{key}/{name}": text for name, text in decks.items()}
             if stage.reused:
@@ -196,9 +218,10 @@ def run(
     versions, path = {tool.name: tool.version() for tool in tools}, folder / "results.h5"
     with claim(folder, force=force):
         old = stored_results(path)
+        kept = _kept(outcome, old)
 
         def keep() -> None:
-            store.write(path, _merge_earlier(outcome.results, old))
+            store.write(path, _merge_earlier(outcome.results, old, kept), old)
 
         fill(outcome, tools, versions, old=None if fresh else old, progress=progress, keep=keep)
     return outcome

@@ -27,8 +27,14 @@ class Results:
     paths: dict[str, pd.DataFrame] = field(default_factory=dict)
 
 
-def write(path: Path, results: Results) -> None:
-    """Store `results` in the HDF5 file `path` and its comparison as CSV beside it."""
+def write(path: Path, results: Results, stored: Results | None = None) -> None:
+    """Store `results` in the HDF5 file `path` and its comparison as CSV beside it.
+
+    stored: results in the file; equal ones stay.
+    """
+    h5.write_csv(path.with_suffix(".csv"), results.comparison)
+    if stored and h5.same(vars(results), vars(stored)):
+        return
     with h5.new_file(path) as file:
         h5.write_attributes(file, results.attributes)
         h5.write_text(file, "case", results.case_text)
@@ -40,7 +46,6 @@ def write(path: Path, results: Results) -> None:
             h5.write_attributes(file[f"impacts/{key}"], about)
         for key, text in results.decks.items():
             h5.write_text(file, f"decks/{key}", text)
-    h5.write_csv(path.with_suffix(".csv"), results.comparison)
 
 
 def read(path: Path | str) -> Results:

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A figure as data (panels of lines and points with their axes), and its drawing for papers and pages in one style.
 
-A drawing is a PNG, SVG or PDF file with the data as CSV beside it, or an SVG element of a page.
+A drawing is a PNG, SVG or PDF file with the data as CSV beside it, or an SVG element of a page. All that it shows
+follows from the figure as data, so that a drawing of equal data in the folder is used again.
 """
 
 import csv
+import hashlib
 import io
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -74,8 +78,8 @@ class Panel:
 class Chart:
     """A figure: panels that share the x axis one above the other, or `beside` each other with the same y axis.
 
-    columns: of small panels with the same x axis, each with its y axis as title. name: of its files. alt: what the
-    figure shows, in words, for those who do not see it.
+    columns: of small panels with the same x axis, each with its y axis as title. name: of its files, if it has a `file`
+    beside a page. alt: what the figure shows, in words, for those who do not see it.
     """
 
     name: str
@@ -85,6 +89,7 @@ class Chart:
     beside: bool = False
     columns: int = 1
     heading: str = ""  # on a page; empty: the title
+    file: bool = True
     kind: ClassVar[str] = "chart"
 
     def csv(self) -> str:
@@ -119,53 +124,101 @@ MARKERS = "ox+^sDv"
 WIDTH, HEIGHT = 7.0, 4.2  # of one panel [inch]
 SMALL = 3.3, 2.1  # of one panel among columns [inch]
 LEGEND_ROW = 0.22  # [inch]
+DPI = 130
 VARIABLES = {"#000000": "ink", "#0072b2": "blue", "#8c564b": "brown"}  # of a page: a dark page has lighter colours
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-def save(
-    chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True, comment: str = ""
-) -> list[Path]:
+def fingerprint(source: str, *contents: object) -> str:
+    """Hash of all that a drawing shows: its contents by their repr, the `source` file that draws it, matplotlib."""
+    sha = hashlib.sha256(Path(source).read_bytes())
+    sha.update(repr((version("matplotlib"), contents)).encode())
+    return sha.hexdigest()
+
+
+def holds(path: Path, digest: str) -> bool:
+    """Whether a PNG file is the drawing with this fingerprint."""
+    return path.exists() and digest.encode() in path.read_bytes()
+
+
+class Drawing:
+    """A chart and its figure, which is drawn and laid out once, when it is first needed."""
+
+    def __init__(self, chart: Chart) -> None:
+        self.chart = chart
+
+    @cached_property
+    def digest(self) -> str:
+        """The fingerprint; numbers count by the digits of the data as CSV."""
+        chart = self.chart
+        panels = [replace(p, series=[replace(s, x=(), y=()) for s in p.series]) for p in chart.panels]
+        return fingerprint(__file__, replace(chart, panels=panels, alt="", heading=""), chart.csv())
+
+    @cached_property
+    def figure(self) -> "Figure":
+        """The figure of matplotlib, whose places no longer change."""
+        from matplotlib import rc_context
+
+        with rc_context(STYLE):  # type: ignore[arg-type]
+            figure = draw(self.chart)
+            if engine := figure.get_layout_engine():
+                engine.execute(figure)
+            figure.set_layout_engine("none")
+        return figure
+
+    def save(self, folder: Path, formats: Sequence[str], *, data: bool = True) -> list[Path]:
+        """A file of each of `formats` in `folder`, and the `data` as CSV; their paths."""
+        paths = [folder / f"{self.chart.name}.{kind}" for kind in formats]
+        for kind, path in zip(formats, paths, strict=True):
+            if kind != "png" or not holds(path, self.digest):
+                self._save(kind, path)
+        return paths + (write_texts(folder, {f"{self.chart.name}.csv": self.chart.csv()}) if data else [])
+
+    def _save(self, kind: str, path: Path) -> None:
+        from matplotlib import rc_context
+
+        about = BARE_DATE[kind] | ({"Comment": self.digest} if kind == "png" else {})
+        with rc_context(STYLE), atomic(path) as temporary:  # type: ignore[arg-type]
+            self.figure.savefig(temporary, dpi=DPI, format=kind, metadata=about)
+
+    def svg(self) -> str:
+        """The chart without its title as an element `svg` of a page.
+
+        Black and PALETTE's dark colours are CSS variables of the page.
+        """
+        from matplotlib import rc_context
+        from matplotlib.transforms import Bbox
+
+        figure, text = self.figure, io.StringIO()
+        width, height = figure.get_size_inches()
+        titles = [title.get_window_extent().y0 / figure.dpi for title in figure.texts]
+        below = Bbox([[0.0, 0.0], [width, min([height, *titles])]])
+        with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
+            for title in figure.texts:
+                title.set_visible(False)
+            figure.savefig(text, format="svg", transparent=True, bbox_inches=below, metadata={"Date": None})
+            for title in figure.texts:
+                title.set_visible(True)
+        drawn = text.getvalue()
+        drawn = re.sub(
+            r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
+        )
+        drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn.rstrip())  # one page has several drawings
+        for colour, variable in VARIABLES.items():
+            drawn = drawn.replace(colour, f"var(--{variable})")
+        return drawn
+
+
+def save(chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True) -> list[Path]:
     """Draw a chart into `folder`, a file of each of `formats`, and write its `data` as CSV; their paths.
 
-    `comment` is stored in a PNG file. The caller keeps the folder (`claim`).
+    The caller keeps the folder (`claim`).
     """
-    from matplotlib import rc_context
-
-    with rc_context(STYLE):  # type: ignore[arg-type]
-        figure = draw(chart)
-        paths = []
-        for kind in formats:
-            path = folder / f"{chart.name}.{kind}"
-            about = BARE_DATE[kind] | ({"Comment": comment} if comment and kind == "png" else {})
-            with atomic(path) as temporary:
-                figure.savefig(temporary, dpi=130, format=kind, metadata=about)
-            paths.append(path)
-    return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
+    return Drawing(chart).save(folder, formats, data=data)
 
 
-def svg(chart: Chart) -> str:
-    """A chart without its title as an element `svg` of a page.
-
-    Black and PALETTE's dark colours are CSS variables of the page.
-    """
-    from matplotlib import rc_context
-
-    text = io.StringIO()
-    with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
-        draw(chart, title=False).savefig(text, format="svg", transparent=True, metadata={"Date": None})
-    drawn = text.getvalue()
-    drawn = re.sub(
-        r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
-    )
-    drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn)  # one page has several drawings
-    for colour, variable in VARIABLES.items():
-        drawn = drawn.replace(colour, f"var(--{variable})")
-    return drawn
-
-
-def draw(chart: Chart, *, title: bool = True) -> "Figure":
-    """A chart as a figure of matplotlib."""
+def draw(chart: Chart) -> "Figure":
+    """A chart with its title as a figure of matplotlib."""
     figure, grid = _grid(chart)
     n, columns = len(chart.panels), grid.shape[1]
     for k, (axes, panel) in enumerate(zip(grid.flat, chart.panels, strict=False)):
@@ -194,8 +247,7 @@ def draw(chart: Chart, *, title: bool = True) -> "Figure":
                 break
             legend.remove()
         figure.set_figheight(figure.get_figheight() + LEGEND_ROW * math.ceil(len(known) / columns))
-    if title:
-        figure.suptitle(chart.title, fontsize=11, parse_math=False)
+    figure.suptitle(chart.title, fontsize=11, parse_math=False)
     return figure
 
 

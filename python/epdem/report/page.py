@@ -5,6 +5,7 @@ A study hands over its parts: words, facts, charts, tables, listings, pictures. 
 """
 
 import base64
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,14 +13,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 from ..base.files import write_text
 from ..base.terminal import cell, heads
-from .chart import Chart, svg
+from .chart import Chart, Drawing
 
 if TYPE_CHECKING:  # slow to import
     import pandas as pd
 
 NAME = "report.html"
 MOST_CELLS = 12_000  # of a table: about 0.8 MB
-HEAD = 4096  # bytes in which the mark of a page stands
 
 
 @dataclass(frozen=True)
@@ -103,21 +103,27 @@ class Page:
     warnings: Sequence[str] = ()
 
 
-def render(page: Page, mark: str = "") -> str:
-    """The page as HTML."""
+_DRAWN = re.compile(r'data-drawing="([0-9a-f]{64})">(<svg.*?</svg>)', re.S)
+
+
+def render(page: Page, drawn: Callable[[Drawing], str] = Drawing.svg) -> str:
+    """The page as HTML. drawn: the element `svg` of a drawing."""
     from ..base import rendering  # slow to import
 
-    return rendering.render("report/page.html.j2", page=page, mark=mark, drawn=svg)
+    return rendering.render("report/page.html.j2", page=page, drawing=Drawing, drawn=drawn)
 
 
-def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:
-    """Write the page that `page()` returns to `path`, unless a page with this mark is there.
+def write(path: Path, page: Page, formats: Sequence[str] = ()) -> Path:
+    """Write a page to `path`, and beside it a file of each of `formats` of its charts; the path.
 
-    The caller claims the folder. mark: hash of the results that the page shows.
+    A figure of the page that was there shows the same if its fingerprint is the same. The caller claims the folder.
     """
-    if mark and path.exists():
-        with path.open("rb") as stream:
-            if f'content="{mark}"'.encode() in stream.read(HEAD):
-                return path
-    write_text(path, render(page(), mark), sync=False)
+    before = dict(_DRAWN.findall(path.read_text(encoding="utf-8", errors="replace"))) if path.exists() else {}
+
+    def drawn(drawing: Drawing) -> str:
+        if formats and drawing.chart.file:
+            drawing.save(path.parent, formats)
+        return before.get(drawing.digest) or drawing.svg()
+
+    write_text(path, render(page, drawn), sync=False)
     return path

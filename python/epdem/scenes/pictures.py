@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
 
+import hashlib
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import pandas as pd
 from ..base.files import atomic
 from ..case.walls import Room
 from ..errors import CaseError
-from ..report.chart import Axis
+from ..report.chart import Axis, fingerprint, holds
 from . import placement
 from .checks import kinetic
 from .columns import columns_of_frames, last_frame, units
@@ -58,20 +59,29 @@ def refuse_color(p: ScenePlan) -> None:
         raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
 
 
-def _draw_walls(axis: Any, p: ScenePlan, walls: dict[str, FloatArray], phase: Phase, *, front: bool) -> None:
-    """The triangles of `walls`, shape (n, 3 corners, 3); planes of a phase as their outline in the room."""
+Walls = tuple[list[FloatArray], list[FloatArray]]  # triangles (n, 3 corners, 3) of each wall, outlines of planes (4, 3)
+
+
+def _walls(p: ScenePlan, triangles: dict[str, FloatArray], phase: Phase) -> Walls:
+    """Walls of `triangles`, and the planes of a phase as their outline in the room."""
+    planes = (*p.scene.planes, *(g for g in p.scene.gates if g.name in phase.gates))
+    return [*triangles.values()], [sheet(w, p.box).reshape(-1, 3)[[0, 1, 2, 5]] for w in planes]
+
+
+def _draw_walls(axis: Any, walls: Walls, *, front: bool) -> None:
     from matplotlib.collections import PolyCollection
 
     plane, _ = _axes()
-    for triangles in walls.values():
+    for triangles in walls[0]:
         outline = triangles @ plane.T
         face, edge = (0.3, 0.4, 0.6, 0.03 if front else 0.10), (0.3, 0.4, 0.6, 0.15)
         axis.add_collection(PolyCollection([*outline], facecolor=face, edgecolor=edge, lw=0.3))
     if front:
         return
-    for w in (*p.scene.planes, *(g for g in p.scene.gates if g.name in phase.gates)):
-        outline = sheet(w, p.box).reshape(-1, 3)[[0, 1, 2, 5]] @ plane.T
-        axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
+    for outline in walls[1]:
+        axis.add_collection(
+            PolyCollection([outline @ plane.T], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6)
+        )
 
 
 def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, color: FloatArray) -> None:
@@ -114,9 +124,9 @@ def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any
     return fig, axis
 
 
-def _save(fig: Any, path: Path) -> None:
+def _save(fig: Any, path: Path, about: dict[str, str] | None = None) -> None:
     with atomic(path) as temporary:
-        fig.savefig(temporary, dpi=DPI)
+        fig.savefig(temporary, dpi=DPI, metadata=about)
 
 
 def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> str:
@@ -125,22 +135,29 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> str:
 
     A wall that a force drives is left out: no table holds its position.
     """
+    last = coloured(last_frame(spheres))
+    x, radius, values = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), last[p.output.color].to_numpy()
+    walls = _walls(p, at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles), p.phases[-1])
+    title, label = p.case.case.title, str(Axis(p.output.color, units(last).get(p.output.color, "")))
+    time = float(p.time_at(last["step"].to_numpy()[:1])[0])
+    numbers = hashlib.sha256(b"".join(array.tobytes() for array in (x, radius, values, *walls[0], *walls[1])))
+    digest = fingerprint(__file__, title, label, DPI, numbers.hexdigest())
+    if not holds(path, digest):
+        _save(_bed(title, x, radius, values, label, walls), path, {"Comment": digest})
+    return f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
+
+
+def _bed(title: str, x: FloatArray, radius: FloatArray, values: FloatArray, label: str, walls: Walls) -> Any:
+    """The figure of the bed."""
     from matplotlib.cm import ScalarMappable
 
-    last = coloured(last_frame(spheres))
-    x, radius, values = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), last[p.output.color]
-    around = np.concatenate([x - radius[:, None], x + radius[:, None]])
-    fig, axis = _frame(p.case.case.title, around, beside=BAR)
-    walls = at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles)
-    _draw_walls(axis, p, walls, p.phases[-1], front=False)
+    fig, axis = _frame(title, np.concatenate([x - radius[:, None], x + radius[:, None]]), beside=BAR)
+    _draw_walls(axis, walls, front=False)
     shown = ScalarMappable(cmap="viridis")
-    _draw_spheres(axis, x, radius, shown.to_rgba(values.to_numpy())[:, :3])
-    _draw_walls(axis, p, walls, p.phases[-1], front=True)
-    label = str(Axis(p.output.color, units(last).get(p.output.color, "")))
+    _draw_spheres(axis, x, radius, shown.to_rgba(values)[:, :3])
+    _draw_walls(axis, walls, front=True)
     fig.colorbar(shown, ax=axis, label=label, shrink=0.8)
-    _save(fig, path)
-    time = float(p.time_at(last["step"].to_numpy()[:1])[0])
-    return f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
+    return fig
 
 
 def before(p: ScenePlan, path: Path) -> int:
@@ -154,7 +171,7 @@ def before(p: ScenePlan, path: Path) -> int:
     fig, axis = _frame(p.case.case.title, box(p.box).reshape(-1, 3))
     if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
         raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
-    _draw_walls(axis, p, p.triangles, p.phases[0], front=False)
+    _draw_walls(axis, _walls(p, p.triangles, p.phases[0]), front=False)
     for fill in p.insertions:
         _draw_region(axis, fill.region)
     table = _first(p)

@@ -2,13 +2,12 @@
 """The output of a scene: its charts as data, the picture of its bed, checks, summary, JSON."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 
-from ..base.files import claim
 from ..base.terminal import Shown, frame_table, heads, warned
 from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Histogram, Load
@@ -345,12 +344,3 @@ def _measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
         limits = (known.min(), known.max()) if known.size else (math.nan, math.nan)
         found.append((m.name, kind, time, value, *limits, MEASURES[m.kind].unit))
     return pd.DataFrame(found, columns=["measure", "kind", "time [s]", "value", "smallest", "largest", "unit"])
-
-
-def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:
-    """Draw the charts of a scene into the folder of a run, which may write there."""
-    from ..report.chart import save
-
-    with claim(outcome.folder, force=True):
-        for chart in charts(outcome):
-            save(chart, outcome.folder, formats)

@@ -47,8 +47,14 @@ class SceneResults:
         raise AttributeError(f"no table {name!r}; there are {', '.join(tables)}")
 
 
-def write(path: Path, p: ScenePlan, results: SceneResults) -> None:
-    """Store `results` in the HDF5 file `path`, which ParaView shows, and its rows as CSV beside it."""
+def write(path: Path, p: ScenePlan, results: SceneResults, stored: SceneResults | None = None) -> None:
+    """Store `results` in the HDF5 file `path`, which ParaView shows, and its rows as CSV beside it.
+
+    stored: results in the file; equal ones stay.
+    """
+    h5.write_csv(path.with_suffix(".csv"), results.tables["rows"])
+    if stored and h5.same(vars(results), vars(stored)):
+        return
     with h5.new_file(path) as file:
         h5.write_attributes(file, {"kind": "scene", **results.attributes})
         h5.write_text(file, "case", results.case_text)
@@ -63,7 +69,6 @@ def write(path: Path, p: ScenePlan, results: SceneResults) -> None:
             h5.write_attributes(
                 group.create_dataset(str(n), data=data, compression="gzip", fletcher32=True), {"name": name}
             )
-    h5.write_csv(path.with_suffix(".csv"), results.tables["rows"])
 
 
 def read(path: Path | str) -> SceneResults:

@@ -135,7 +135,7 @@ def run(
         }
         decks = {name: text for name, text in given.files.items() if "/" not in name}  # without modules
         found = results.SceneResults(text, old.attributes if old else about, tables, decks, named)
-        results.write(folder / "results.h5", p, found)
+        results.write(folder / "results.h5", p, found, old)
     warnings = [*notes, *measured_warnings(p, tables), *lost_spheres(p, tables)]
     return SceneOutcome(p, folder, found, seconds, old is not None, begin, warnings)
 

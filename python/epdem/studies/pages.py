@@ -19,7 +19,7 @@ from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
 from ..impacts.plan import Plan
-from ..impacts.report import against_measured, largest_errors, mark, yielding
+from ..impacts.report import against_measured, largest_errors, yielding
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
 from ..report.chart import PALETTE, Axis, Chart, Panel, Series
@@ -84,22 +84,19 @@ def page_of(
     return Page(title, sentences, every, passed=outcome.passed, command=said, warnings=outcome.warnings)
 
 
-def write_study_page(page: Page, folder: Path) -> Path:
-    """Write a page into the folder of its study; its path."""
+def write_study_page(page: Page, folder: Path, formats: Sequence[str] = ()) -> Path:
+    """Write a page into the folder of its study, with files of each of `formats` of its charts; its path."""
     with claim(folder, force=True):
-        return write(folder / NAME, lambda: page)
+        return write(folder / NAME, page, formats)
 
 
 COMPARED = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("", "_theory", "_error")))
 OBLIQUE = ("angle", "spin_before", "e_t", "e_t_theory", "psi_1", "psi_2", "psi_2_theory", "psi_2_error", "spin")
 
 
-def write_impacts_page(outcome: Outcome) -> Path:
-    """Write report.html into the folder of a run; its path."""
-    said = command()
-    with claim(outcome.folder, force=True):
-        digest = mark(outcome, said, NAME)
-        return write(outcome.folder / NAME, lambda: impacts_page(outcome, said), mark=digest)
+def write_impacts_page(outcome: Outcome, formats: Sequence[str] = ()) -> Path:
+    """Write report.html, and its figure in each of `formats`, into the folder of a run; the path of the page."""
+    return write_study_page(impacts_page(outcome, command()), outcome.folder, formats)
 
 
 def impacts_page(outcome: Outcome, command: str = "") -> Page:
@@ -201,10 +198,10 @@ TABLES = [
 ]
 
 
-def write_scene_page(outcome: SceneOutcome) -> Path:
-    """Write report.html into the folder of a scene; its path."""
-    with claim(outcome.folder, force=True):
-        return write(outcome.folder / NAME, lambda: scene_page(outcome, command()))
+def write_scene_page(outcome: SceneOutcome, formats: Sequence[str] = ()) -> Path:
+    """Write report.html, and its figures in each of `formats`, into the folder of a scene; the path of the page."""
+    with claim(outcome.folder, force=True):  # the picture of the bed is drawn for the page
+        return write_study_page(scene_page(outcome, command()), outcome.folder, formats)
 
 
 def scene_page(outcome: SceneOutcome, command: str = "") -> Page:

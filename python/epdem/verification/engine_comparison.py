@@ -15,7 +15,6 @@ from ..case.toml import error_context
 from ..engines import ENGINES, ImpactEngine
 from ..engines.yade.engine import Yade
 from ..errors import CaseError, EngineError
-from ..impacts import report
 from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
@@ -139,7 +138,6 @@ def crosscheck(
             rows.append(_row(tool, many, few, x, folder) | {"seconds": seconds})
         table = pd.DataFrame(rows)
         write_csv(folder / "crosscheck.csv", table)
-        report.figure(fine)
     return Crosscheck(table, fine, absent, own)
 
 

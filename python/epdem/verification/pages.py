@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..base.files import claim
 from ..impacts.comparison import UNITS
-from ..report.chart import GREY, Axis, Chart, Panel, Series, save
+from ..report.chart import GREY, Axis, Chart, Panel, Series
 from ..report.page import Facts, Page, Part, Rows
 from ..studies import pages as common
 from . import cost_report
@@ -36,7 +35,7 @@ def of_crosscheck(check: Crosscheck) -> Path:
     parts += [Facts("Laws and theories of their own", check.notes)] if check.notes else []
     parts += [Facts("Left out", check.absent)] if check.absent else []
     page = replace(base, sentences=[*said, *base.sentences], parts=parts + base.parts, passed=check.passed)
-    return common.write_study_page(page, check.outcome.folder)
+    return common.write_study_page(page, check.outcome.folder, ("png",))
 
 
 def _study_page(title: str, sentence: str, parts: list[Part], *, passed: bool | None = None) -> Page:
@@ -90,6 +89,4 @@ def of_validation(v: Validation) -> Path:
     parts += [Facts(one.head["title"], {k: one.head[k] for k in ("source", "material", "read")}) for one in v.sets]
     parts += [Facts("Left out", v.absent)] if v.absent else []
     said = f"{len(v.points)} comparisons with measured numbers; nothing is fitted, and no law has a tolerance here."
-    with claim(v.folder, force=True):
-        save(chart, v.folder)
-        return common.write_study_page(_study_page("Laws against measured impacts", said, parts), v.folder)
+    return common.write_study_page(_study_page("Laws against measured impacts", said, parts), v.folder, ("png",))
