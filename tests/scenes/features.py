@@ -152,11 +152,12 @@ AMOUNTS = {
     "cylinder": {"count": 60, "exact": False, "region": UPRIGHT},
 }
 BALL = {"name": "ball", "material": "rubber", "radius": "1.5 mm", "position": ["-4 mm", "0 mm", "33 mm"]}
+THROWN = {"velocity": ["0 m/s", "0 m/s", "-1 m/s"], "spin": ["0 rad/s", "10 rad/s", "0 rad/s"]}
 BODIES = {
     "none": {},
-    "body": {"body": [BALL | {"velocity": ["0 m/s", "0 m/s", "-1 m/s"], "spin": ["0 rad/s", "10 rad/s", "0 rad/s"]}]},
+    "body": {"body": [BALL | THROWN]},
     "frozen body": {"body": [BALL | {"frozen": True}]},
-    "late body": {"body": [BALL | {"phase": "second"}]},
+    "late body": {"body": [BALL | THROWN | {"phase": "second"}]},
     "table": {"fill": [{"name": "table", "file": "table.csv"}]},
     "table of glass": {"fill": [{"name": "table", "file": "falling.csv", "material": "glass"}]},
 }

@@ -39,8 +39,8 @@ def poured(tmp_path_factory):
 def continued(poured, begin: int, tmp_path):
     """Particles of the frames after step `begin` of a run continued from there, in a folder of its own."""
     p, folder, _ = poured
-    for name in ("setup.in", launcher.OUT, f"restart.{begin}.bin"):
-        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    for path in (folder / "setup.in", folder / launcher.OUT, folder / f"restart.{begin}.bin", *folder.glob("*.data")):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
     resume.write_resume(p, tmp_path, begin)
     launcher.run("in.resume", tmp_path)
     return tables.particles(Frames(p, tmp_path, tables.kinds(p), range(begin + 1)))

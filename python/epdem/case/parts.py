@@ -313,6 +313,13 @@ class Parts(Frozen):
         return [*of_files, *(b.sphere for b in self.body if b.phase in (None, first))]
 
     @property
+    def periods(self) -> tuple[float, float, float]:
+        """Lengths after which the room repeats along x, y and z [m]; 0: it does not."""
+        sides = zip("xyz", (self.room.x, self.room.y), strict=False)
+        x, y = (high - low if self.periodic else 0.0 for _, (low, high) in sides)
+        return x, y, 0.0
+
+    @property
     def images(self) -> list[tuple[float, float, float]]:
         """Shifts [m] from a sphere to itself and, in a periodic room, to its nearest images."""
         ways = (-1, 0, 1) if self.periodic else (0,)

@@ -11,7 +11,7 @@ from ..base.rendering import number
 from ..errors import CaseError
 from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
-from ..scenes.limits import PressedBed
+from ..scenes.limits import TOUCH, PressedBed
 from ..scenes.model import Model, Type
 from ..scenes.plan import PhaseSteps, ScenePlan
 from . import log
@@ -22,11 +22,11 @@ SKIN_OF_GROWTH = 0.2  # of the largest radius, with compaction: lists, made anew
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
-def data_text(title: str, types: int, box: Iterable[float], rows: Iterable[Sequence[float]]) -> str:
-    """A data file of `types` atom types in a box xlo xhi ... [m]; ids from 1. rows: type, diameter, density, place,
-    velocity, spin of each sphere, SI."""
+def data_text(title: str, types: int, box: Iterable[float], rows: Iterable[Sequence[float]], first: int = 1) -> str:
+    """A data file of `types` atom types in a box xlo xhi ... [m]; ids from `first`. rows: type, diameter, density,
+    place, velocity, spin of each sphere, SI."""
     atoms, velocities = [], []
-    for n, (kind, *values) in enumerate(rows, 1):
+    for n, (kind, *values) in enumerate(rows, first):
         words = [number(x) for x in values]
         atoms.append(" ".join([str(n), str(int(kind)), *words[:5]]))
         velocities.append(" ".join([str(n), *words[5:]]))
@@ -34,6 +34,23 @@ def data_text(title: str, types: int, box: Iterable[float], rows: Iterable[Seque
     head = [f"{' '.join(title.split())}: id type diameter density x y z", "", f"{len(atoms)} atoms"]
     head += [f"{types} atom types", f"{xlo} {xhi} xlo xhi", f"{ylo} {yhi} ylo yhi", f"{zlo} {zhi} zlo zhi"]
     return "\n".join([*head, "", "Atoms", "", *atoms, "", "Velocities", "", *velocities, ""])
+
+
+def taken_places(p: ScenePlan, phase: str, radius: str) -> tuple[tuple[str, str], ...]:
+    """(name, formula of the spheres that lie in its place) of each single sphere that comes with a phase but the first.
+
+    radius: the host's word for the radius of a sphere.
+    """
+    found = []
+    for b in p.scene.later:
+        ways = []
+        for axis, place, period in zip("xyz", b.position, p.scene.periods, strict=True):
+            way = f"({axis}-({number(place)}))"
+            ways.append(f"({way}-{number(period)}*round({way}/{number(period)}))" if period else way)
+        squares = "+".join(f"{way}*{way}" for way in ways)
+        if b.phase == phase:
+            found.append((b.name, f"{squares} < ({radius}+{number(b.radius * (1.0 - TOUCH))})^2"))
+    return tuple(found)
 
 
 def equal_spheres(kind: int, g: Group) -> list[list[float]]:

@@ -23,6 +23,7 @@ from .limits import (
     largest_density,
     pressed_beds,
     refuse_below_solid,
+    refuse_bodies_in_walls,
     refuse_combinations,
     refuse_faster_than_sound,
     refuse_outside,
@@ -268,6 +269,13 @@ class ScenePlan:
         """All spheres that the room gets."""
         return sum(i.count for i in self.insertions) + len(self.scene.table) + len(self.scene.later)
 
+    def count_before(self, phase: str) -> int:
+        """All spheres that come before those of a phase."""
+        names = [p.name for p in self.phases]
+        earlier = names[: names.index(phase)]
+        bodies = sum(b.phase in earlier for b in self.scene.later) + (len(self.scene.table) if earlier else 0)
+        return bodies + sum(i.count for i in self.insertions if i.phase in earlier)
+
     @property
     def row_columns(self) -> tuple[str, ...]:
         """The power of moving walls, in the rows of a scene that has their work."""
@@ -363,6 +371,7 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_positions(scene)
     refuse_outside(scene, triangles)
     meshes.refuse_leaving(scene, triangles)
+    refuse_bodies_in_walls(scene, triangles)
     refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)

@@ -16,7 +16,7 @@ from ...scenes.columns import columns_of_frames
 from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition
+from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words
 from .scene_walls import DeckWall, meshes, motions, plane, plate_place, restart_commands
 
@@ -63,9 +63,9 @@ def check(p: ScenePlan) -> None:
 class PhaseCommands:
     """A phase. data: file of the spheres that come with it; None: none do. placed: spheres that were placed before.
 
-    steps: that are left. time_step [s]: None: that of the phase before. fills: key, id, and limits of the region that
-    has to be empty. gates: planes that come with it. commands: which set walls in motion. ends: fixes that end with it.
-    restart_commands: where a restart file is due.
+    steps: that are left. time_step [s]: None: that of the phase before. places: formulas of the spheres that lie in the
+    places of single ones. fills: key, id, and limits of the region that has to be empty. gates: planes that come with
+    it. commands: which set walls in motion. ends: fixes that end with it. restart_commands: where a restart is due.
     """
 
     run: PhaseSteps
@@ -73,6 +73,7 @@ class PhaseCommands:
     time_step: float | None
     data: str | None
     placed: int
+    places: tuple[tuple[str, str], ...]
     fills: tuple[tuple[str, str, str], ...]
     gates: tuple[DeckWall, ...]
     commands: tuple[str, ...]
@@ -114,15 +115,14 @@ class SceneDeck:
 
 def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
     gates = {w.name: plane(p, w) for w in p.scene.gates}
-    first = p.phases[0].name
-    placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
     for number, run in enumerate(p.phase_steps):
         yield PhaseCommands(
             run=run,
             steps=run.steps,
             time_step=run.own_time_step,
             data=_data_file(p, run.name),
-            placed=placed,
+            placed=p.count_before(run.name),
+            places=taken_places(p, run.name, "radius"),
             fills=tuple(_fills(p, run.name)),
             gates=tuple(gates[name] for name in run.added),
             commands=tuple(motions(p, number)) if number else (),
@@ -130,8 +130,6 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             stop=stop_condition(p, run, partial(plate_place, p)),
             restart_commands=restart_commands(p, number),
         )
-        placed += sum(b.phase == run.name for b in p.scene.later)
-        placed += sum(f.count for f in p.insertions if f.phase == run.name != first)
 
 
 def deck(p: ScenePlan) -> SceneDeck:

@@ -18,7 +18,8 @@ from ...scenes.plan import ScenePlan
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
-from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes, table
+from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes
+from .scene_parts import data as data_files
 
 WORKS = {  # what dumps call the works and energies of a sphere
     "plastic_work": "f_plasticWork",
@@ -222,7 +223,6 @@ def files(p: ScenePlan) -> dict[str, str]:
         "in.scene": decks.render("liggghts/scene.in.j2", deck=data),
         "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=data),
     }
-    if p.scene.table:
-        texts["spheres.data"] = table(p)
+    texts |= data_files(p)
     formulas = tubes(p)
     return texts | {f"{name}.stl": stl_text(name, x) for name, x in p.triangles.items() if name not in formulas}

@@ -34,7 +34,7 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     if number < len(p.phases):
         part = d.phases[number]
         at_once = [f for f in d.insertions if f.fill.rate is None and f.fill.phase == part.run.name]
-        comes = step == begin and bool(part.particles or at_once)
+        comes = step == begin and bool(part.bodies or at_once)
         gone = step - begin
         rest = replace(part, steps=part.steps - gone, stop=later(part.stop, gone, p.every))
         d = replace(d, phases=(*d.phases[:number], rest, *d.phases[number + 1 :]))

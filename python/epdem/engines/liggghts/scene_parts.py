@@ -10,14 +10,14 @@ from functools import partial
 import numpy as np
 
 from ...base import rendering as decks
-from ...case.parts import SingleSphere
+from ...case.parts import Sphere
 from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, VibrateMove
 from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ..input_script import WRITE_RESTART, StopCondition, data_text, stop_condition, torque_origin
+from ..input_script import WRITE_RESTART, StopCondition, data_text, stop_condition, taken_places, torque_origin
 from .primitives import Primitive, primitive, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
@@ -68,25 +68,13 @@ class SurfaceMesh:
 
 
 @dataclass(frozen=True)
-class PhaseParticle:
-    """A sphere that comes with a phase; no other centre is as `near` to its place [m]."""
-
-    name: str
-    type: int
-    diameter: float
-    density: float
-    place: str
-    near: float
-    velocity: str
-
-
-@dataclass(frozen=True)
 class DeckPhase:
     """A phase: commands at its start and its end, and commands of a run that continues in it.
 
-    steps: remaining ones. gates: planes that come with the phase. particles: spheres that come with it. power: formula
-    of the power of all that moves. vibrations: (wall, formula of the angle at the begin of the phase) of each vibration
-    whose power is counted. restart_commands: where a restart file is due.
+    steps: remaining ones. gates: planes that come with the phase. bodies: file of the single spheres that come with it,
+    "": none do; places: formulas of the spheres that lie in their places. power: formula of the power of what moves.
+    vibrations: (wall, formula of the angle at the begin of the phase) of each vibration whose power is counted.
+    restart_commands: where a restart file is due.
     """
 
     run: PhaseSteps
@@ -96,7 +84,8 @@ class DeckPhase:
     resume_gates: tuple[Primitive, ...]
     resume_commands: tuple[str, ...]
     end_commands: tuple[str, ...]
-    particles: tuple[PhaseParticle, ...]
+    bodies: str
+    places: tuple[tuple[str, str], ...]
     power: str
     vibrations: tuple[tuple[str, str], ...]
     stop: StopCondition | None
@@ -241,18 +230,6 @@ def _place(p: ScenePlan, bed: PressedBed) -> str:
     return f"(f_{decks.wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
-def _phase_particle(p: ScenePlan, b: SingleSphere) -> PhaseParticle:
-    return PhaseParticle(
-        name=f"body_{b.name}",
-        type=p.model.type_of(b.material),
-        diameter=2 * b.radius,
-        density=p.case.materials[b.material].density,
-        place=_words(b.position),
-        near=1e-3 * b.radius,
-        velocity=_words(b.velocity) if any(b.velocity) else "",
-    )
-
-
 def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     """The phases of a scene."""
     gates = {w.name: primitive(p, w) for w in p.scene.gates}
@@ -273,7 +250,8 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
                 *(f"unfix {decks.wall_id(name)}" for name in run.removed),
                 *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run, after)),
             ),
-            particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == run.name),
+            bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
+            places=taken_places(p, run.name, "r"),
             power=power(p, run) if with_power else "",
             vibrations=tuple(_angles(before, run, new)) if with_power else (),
             stop=stop_condition(p, run, partial(_place, p)),
@@ -299,11 +277,27 @@ def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
     return next_one is not None and isinstance(one, PressMove) == isinstance(next_one, PressMove)
 
 
-def table(p: ScenePlan) -> str:
-    """The data file of the spheres of the table."""
-    spheres = ((p.model.type_of(s.material), s) for s in p.scene.table)
-    rows = [(k, 2 * s.radius, p.model.types[k - 1].density, *s.place, *s.velocity, *s.spin) for k, s in spheres]
-    return data_text(f"spheres of {p.case.case.title}", len(p.model.types), p.box, rows)
+def bodies_file(phase: str) -> str:
+    """Name of the data file of the spheres with given places that come with a phase but the first."""
+    return f"phase_{phase}.data"
+
+
+def data(p: ScenePlan) -> dict[str, str]:
+    """The data files of the spheres with given places: those of the table, and those that come with each phase.
+
+    Ids of later ones follow those of all earlier spheres, also of lost ones.
+    """
+    given = {"spheres.data": (p.scene.table, 0)}
+    for phase in p.phases[1:]:
+        later = [b.sphere for b in p.scene.later if b.phase == phase.name]
+        given[bodies_file(phase.name)] = later, p.count_before(phase.name)
+    return {name: _data(p, spheres, before) for name, (spheres, before) in given.items() if spheres}
+
+
+def _data(p: ScenePlan, spheres: Sequence[Sphere], before: int) -> str:
+    typed = ((p.model.type_of(s.material), s) for s in spheres)
+    rows = [(k, 2 * s.radius, p.model.types[k - 1].density, *s.place, *s.velocity, *s.spin) for k, s in typed]
+    return data_text(f"spheres of {p.case.case.title}", len(p.model.types), p.box, rows, before + 1)
 
 
 def _times(name: str, first: int, values: Sequence[float]) -> list[str]:

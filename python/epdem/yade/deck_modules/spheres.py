@@ -78,6 +78,16 @@ class Spheres:
         self.ids, self.states = [self.ids[k] for k in kept], [self.states[k] for k in kept]
         self.table = self.table[inside]
 
+    def require_free(self, phase: str, **bodies: tuple[float, float, float, float]) -> None:
+        """Raise RuntimeError if another sphere is at the place of a body: x, y, z, radius [m] of each by its name."""
+        positions = self.positions()
+        for name, (*place, radius) in bodies.items():
+            if not self.is_free(place, radius * (1.0 - 1e-6), positions):
+                raise RuntimeError(
+                    f"scene.body.{name}.position: at the begin of phase {phase} another sphere is there; move the "
+                    "body, or give it another phase"
+                )
+
     def is_free(self, place: Any, radius: float, positions: Any) -> bool:
         """Whether a sphere at a place overlaps no other one."""
         way = positions - place

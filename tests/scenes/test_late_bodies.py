@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Single spheres that come with a later phase: every key of them arrives in each host, and their places are free."""
+
+import numpy as np
+import pytest
+from parts_cases import FLOOR, parts
+from scene_runs import run, write_case
+
+from engines.lammps_decks import needs_lammps
+from epdem.case.scene import parse
+from epdem.errors import CaseError, EngineError
+from epdem.scenes.plan import plan
+
+HOSTS = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("lammps", marks=needs_lammps),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
+]
+PHASES = [{"name": "first", "duration": "2 ms"}, {"name": "second", "duration": "2 ms"}]
+
+
+def body(name, place, **keys):
+    position = [f"{x} mm" for x in place]
+    return {"name": name, "material": "glass", "radius": "1.5 mm", "position": position} | keys
+
+
+def free(late, first=(0, 0, 20), **scene):
+    """A body in a room without gravity, and one that comes later."""
+    data = parts(gravity="0 m/s^2", fill=[], body=[body("first", first), late], phase=PHASES, **scene)
+    own = {"numerics": {"time_step": "2e-5 s", "highest_speed": "4 m/s"}}
+    return data | own | {"contact": {"friction": 0.3}, "output": {"rows": 20, "particles": 10}}
+
+
+@pytest.mark.parametrize("engine", HOSTS)
+def test_a_late_body_has_every_key_in_its_first_frame(engine, tmp_path):
+    motion = {"velocity": ["1 m/s", "-2 m/s", "3 m/s"], "spin": ["-50 rad/s", "500 rad/s", "7 rad/s"]}
+    late = body("late", (5, 0, 15), phase="second", **motion) | {"material": "steel", "radius": "0.7 mm"}
+    outcome = run(write_case(free(late), tmp_path), engine, out=tmp_path / "out")
+    frames = outcome.results.particles.query("id == 2")
+    row = frames.iloc[0]
+    flown = outcome.plan.time_at(np.array([row["step"]]))[0] - 2e-3
+    assert 0 <= flown < 1e-3
+    assert row[["x", "y", "z"]].to_list() == pytest.approx([5e-3 + flown, -2 * flown, 15e-3 + 3 * flown], rel=1e-9)
+    assert row[["vx", "vy", "vz"]].to_list() == [1, -2, 3]
+    assert row[["omega_x", "omega_y", "omega_z"]].to_list() == [-50, 500, 7]
+    assert row["radius"] == pytest.approx(0.7e-3) and row["mass"] == pytest.approx(7800 * 4 / 3 * np.pi * 0.7e-3**3)
+
+
+@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("periodic", [False, True])
+def test_a_late_body_in_a_sphere_ends_the_run(engine, periodic, tmp_path):
+    """The first body moves into the place; in a periodic room the place is beyond a face."""
+    place = (-9.7, 0, 20) if periodic else (6, 0, 20)
+    data = free(body("late", place, phase="second"), (7, 0, 20), periodic=periodic)
+    data["scene"]["body"][0]["velocity"] = ["0.1 m/s", "0 m/s", "0 m/s"]
+    data["scene"]["wall"] = [FLOOR | {"at": "-4 mm"}]
+    words = "scene.body.late.position: at the begin of phase second another sphere is there"
+    if periodic:  # the first body is at 7.2 mm, and with 1 m/s at 9 mm
+        assert run(write_case(data, tmp_path), engine, out=tmp_path / "apart").passed
+        data["scene"]["body"][0]["velocity"] = ["1 m/s", "0 m/s", "0 m/s"]
+    with pytest.raises(EngineError, match=words):
+        run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+
+
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "30 mm"], "size": ["18 mm", "18 mm"]}
+LID |= {"material": "steel"}
+GATE = FLOOR | {"name": "gate", "at": "10 mm"}
+
+
+@pytest.mark.parametrize(
+    ("place", "walls", "move", "met"),
+    [
+        ((0, 0, 1.4), [], [], "wall floor by 0.0001 m"),
+        ((0, 0, 1.5), [], [], None),
+        ((0, 0, 10), [GATE | {"phases": ["second"]}], [], "wall gate by 0.0015 m"),
+        ((0, 0, 10), [GATE | {"phases": ["first"]}], [], None),
+        ((0, 0, 29), [LID], [], "wall lid by 0.0005 m"),
+        ((0, 0, 29), [LID], [["0 m/s", "0 m/s", "-1 m/s"]], "wall lid by 0.0005 m"),  # 28 mm, below the centre
+        ((0, 0, 29), [LID], [["0 m/s", "0 m/s", "1 m/s"]], None),  # 32 mm
+        ((0, 0, 26), [LID], [["0 m/s", "0 m/s", "-1 m/s"]], None),  # 28 mm
+        ((0, 0, 27), [LID], [["0 m/s", "0 m/s", "-1 m/s"]], "wall lid by 0.0005 m"),
+    ],
+)
+def test_a_late_body_in_a_wall_is_refused(place, walls, move, met):
+    data = free(body("late", place, phase="second"), (0, 0, 20), wall=[FLOOR, *walls])
+    data["scene"]["phase"][0]["move"] = [{"wall": "lid", "kind": "linear", "velocity": v} for v in move]
+    if met is None:
+        assert plan(parse(data)).count == 2
+        return
+    words = rf"scene\.body\.late\.position: at the begin of phase second the body overlaps {met}"
+    with pytest.raises(CaseError, match=words):
+        plan(parse(data))
