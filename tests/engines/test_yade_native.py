@@ -33,7 +33,9 @@ def prepared(case="steel_wall", law=None, steps=100, **impact):
         data["materials"]["brass"] = BRASS
     data["impact"] |= impact
     if law == "meyer":
-        data["law"] = {"name": law, "hardening_exponent": 0.3}
+        law = {"name": law, "hardening_exponent": 0.3}
+    if isinstance(law, dict):
+        data["law"], law = law, law["name"]
     numerics = Numerics(steps_in_contact=steps, phases=8)
     x = experiment(parse(data, "test").model_copy(update={"numerics": numerics}), law)
     prediction = predict(x)

@@ -61,6 +61,16 @@ def test_impacts_are_those_of_the_c_library_in_a_deck(law, kind, both):
         assert np.abs((two - one) / scale).max() <= 1e-9, name
 
 
+def test_finite_strain_of_unequal_bodies_is_that_of_the_embedded_engine_in_both(both):
+    softer = {"material": "brass", "radius": "4 mm"}
+    p, _ = prepared(
+        law={"name": "cavity", "finite_strain": True}, speeds=["80 m/s"], kind="sphere-sphere", target=softer
+    )
+    expected = measure(p, engine("embedded").run(p, None)).e_n
+    for found in both(lambda folder: impacts(p, folder)):
+        np.testing.assert_allclose(measure(p, found).e_n, expected, rtol=1e-4)
+
+
 def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine(tmp_path):
     outcome = compare(CASES / "oblique_steel.toml", engines=["embedded", "yade"], laws=["cavity"], out=tmp_path)
     rows = outcome.rows[outcome.rows["engine"] == "yade"]

@@ -144,8 +144,12 @@ class Experiment:
 
     def native_law(self) -> Law:
         """The same law in C++."""
-        share = float(self.law.curvature_share(self.R_star, self.body.radius))
-        return Law(self.law.name, E_star=self.E_star, share=share, **self.law.parameters)
+        return Law(self.law.name, E_star=self.E_star, share=self.curvature_share, **self.law.parameters)
+
+    @property
+    def curvature_share(self) -> float:
+        """`theory.pair.curvature_share` of the pair: the share that the C++ laws take."""
+        return float(self.law.curvature_share(self.R_star, self.body.radius))
 
     @property
     def viscous_number(self) -> float:

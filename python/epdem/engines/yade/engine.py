@@ -84,7 +84,7 @@ class Yade(Host):
         if self.classes or self.own_law:
             return {}
         given = {p.name: p.default for p in declarations()[x.law.name].parameters} | x.law.parameters
-        values = {"E_star": x.E_star, "R_star": x.R_star, **given, "share": x.law.share}
+        values = {"E_star": x.E_star, "R_star": x.R_star, **given, "share": x.curvature_share}
         return {name: value for name, value in values.items() if value is not None}
 
     def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:

@@ -27,7 +27,7 @@ LIBRARY = Path(__file__).with_name("libepdem.so")
 class Contacts:
     """Contacts of one pair of materials and one R_star [m]; E_star [Pa], parameters of the law by name, SI.
 
-    share: of the weaker body in the strain, 1/2 to 1.
+    share: curvature share of the pair, on which finite strain depends, 0 to 1.
     """
 
     def __init__(self, law: str, *, E_star: float, R_star: float, share: float, **parameters: float):
