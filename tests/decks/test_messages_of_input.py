@@ -95,6 +95,15 @@ def refused(base: str | dict, changes: dict, says: str, folder: Path) -> None:
         ("steel_wall", {"law": {"name": "cavity", "first_yield_ratio": 3.0}}, "plastic_ratio (c_P) must exceed"),
         (
             "steel_wall",
+            {
+                "law": {"name": "cavity", "first_yield_ratio": 3.0},
+                "materials.steel.yield_stress": None,
+                "materials.steel.yield_ratio": 1e-6,
+            },
+            "law.first_yield_ratio = 3: plastic_ratio (c_P) must exceed",
+        ),
+        (
+            "steel_wall",
             {"measured": {"source": "x", "speeds": ["1 m/s"], "e_n": [0.5, 0.6]}},
             "speeds: 1, e_n: 2; give one e_n for each speed",
         ),

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
-from ..laws.strengths import ADHESION, LawNumbers, find_law
+from ..laws.strengths import ADHESION, LawNumbers, check_ratios, find_law
 from ..theory.cavity import FINITE_STRAIN
 from .fields import Material, Name
 from .units import read_number
@@ -77,7 +77,7 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     if INDEX in given:
         given = _without_index(given)
     strength, ratio = law.strength, f"{law.strength}_ratio"
-    return LawNumbers(
+    numbers = LawNumbers(
         name,
         {
             p.name: read_number(f"law.{p.name}", given.get(p.name, p.default), p.unit, zero=p.may_vanish, below=p.below)
@@ -89,6 +89,8 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
         read_number(f"law.{ADHESION}", given[ADHESION], "J/m^2", zero=True) if ADHESION in given else None,
         compaction,
     )
+    check_ratios(numbers)
+    return numbers
 
 
 def check_law(law: LawChoice, materials: Mapping[str, Material]) -> None:

@@ -252,6 +252,15 @@ def strength_of_yield_ratio(law: LawNumbers, ratio: float, solid: Solid) -> floa
     return unit * math.sqrt(4.0 * ratio / float(_alone(law, unit, like).yield_overlap))
 
 
+def check_ratios(law: LawNumbers) -> None:
+    """Raise CaseError for dimensionless parameters that make no sense together."""
+    try:
+        _alone(law, 1e-3, 1.0)
+    except ValueError as error:
+        given = ", ".join(f"law.{name} = {value:g}" for name, value in own_ratios(law.name, law.ratios).items())
+        raise CaseError(f"{given}: {error}") from None
+
+
 def yield_ratio_of(law: LawNumbers, strength: float, solid: Solid) -> float:
     """The inverse of `strength_of_yield_ratio`."""
     like = float(E_star(*(solid.young_modulus, solid.poisson_ratio) * 2))
