@@ -152,10 +152,12 @@ AMOUNTS = {
     "cylinder": {"count": 60, "exact": False, "region": UPRIGHT},
 }
 BALL = {"name": "ball", "material": "rubber", "radius": "1.5 mm", "position": ["-4 mm", "0 mm", "33 mm"]}
+NEXT = ["-1.02 mm", "0.1 mm", "33 mm"]  # 0.018 mm in the ball
 THROWN = {"velocity": ["0 m/s", "0 m/s", "-1 m/s"], "spin": ["0 rad/s", "10 rad/s", "0 rad/s"]}
 BODIES = {
     "none": {},
     "body": {"body": [BALL | THROWN]},
+    "bodies that overlap": {"body": [BALL | {"material": "glass"}, BALL | {"name": "next", "position": NEXT}]},
     "frozen body": {"body": [BALL | {"frozen": True}]},
     "late body": {"body": [BALL | THROWN | {"phase": "second"}]},
     "table": {"fill": [{"name": "table", "file": "table.csv"}]},

@@ -47,7 +47,10 @@ def with_key(key):
 ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
 NOT_LINEAR = {"phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves"}}
 OF_ROWS = {"none", "force", "side force", "torque", "whole torque"}
-BOTH_MATERIALS_OF_WALLS = {"mixture": {"two materials"}, "bodies": {"body", "frozen body", "late body"}}
+BOTH_MATERIALS_OF_WALLS = {
+    "mixture": {"two materials"},
+    "bodies": {"body", "frozen body", "late body", "bodies that overlap"},
+}
 WITHOUT_CONTACTS = set(SLOTS["output"]) - {"energy", "contacts"}
 SHARED_TYPES = {"contact": set(SLOTS["contact"]) - {"wall friction", "friction of pairs"}}  # of spheres and walls
 # Features that exclude each other, and the sentence that says so. A case with none of these is never refused.

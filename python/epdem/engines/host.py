@@ -17,7 +17,7 @@ from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
 from ..jobs.engine import Engine, Report, check_law, silent
 from ..jobs.stage import Tables, parts_hash
-from ..scenes.columns import named_rows
+from ..scenes.columns import named_rows, with_first_works
 from ..scenes.model import Model
 from ..scenes.plan import Resumed, ScenePlan
 from ..scenes.plan import plan as plan_scene
@@ -117,6 +117,7 @@ class Host(Engine[Any, Any]):
             found["particles"] = own.particles(frames)
         if plan.contacts:
             found["contacts"] = own.contact_table(frames, found["particles"])
+            found["particles"] = with_first_works(plan, found["particles"], found["contacts"])
         if plan.stress_walls:
             found["walls"] = own.wall_table(frames)
         return found | {"phases": plan.phase_table}

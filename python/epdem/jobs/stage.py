@@ -20,7 +20,7 @@ Tables = dict[str, pd.DataFrame]
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 
-FORMAT = 1  # raise it with each change of the way in which tables are made from what an engine has written
+FORMAT = 2  # raise it with each change of the way in which tables are made from what an engine has written
 _COMMENT = re.compile(r"""^#.*|[ \t]+#[^"'\n]*$""", re.M)
 
 

@@ -46,7 +46,7 @@ WORKS = {  # terms of the balance by the columns of the frames
 
 
 def _lost_energy(spheres: pd.DataFrame, energy: pd.Series, steps: np.ndarray) -> np.ndarray:
-    """Energy [J] of the spheres that left before each step, from their last frame."""
+    """Energy [J] of the spheres that left before each step, in their last frame."""
     at_last = spheres.assign(energy=energy).sort_values("step").groupby("id")[["step", "energy"]].last()
     gone = at_last[at_last["step"] < steps[-1]]
     by_step = gone.groupby("step")["energy"].sum().reindex(steps, fill_value=0.0)
@@ -56,6 +56,7 @@ def _lost_energy(spheres: pd.DataFrame, energy: pd.Series, steps: np.ndarray) ->
 def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, lost_spheres_energy, balance.
 
+    gravity: with the spheres that have left, at their last height. elastic: with cohesion less its potential.
     With friction or rolling also rotation; with adhesion the work lost by jumps, and `elastic` includes the surface
     energy. With partial slip also friction, the work of friction, and springs, the elastic energy of the springs.
 
@@ -70,7 +71,10 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
     terms = pd.DataFrame(own | {"gravity": gravity}).groupby(spheres["step"]).sum()
     steps = terms.index.to_numpy()
     terms["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0)
-    terms["lost_spheres_energy"] = _lost_energy(spheres, sum(own.values()), steps) if p.scene.open_boundary else 0.0
+    terms["lost_spheres_energy"] = 0.0
+    if p.scene.open_boundary:
+        terms["lost_spheres_energy"] = _lost_energy(spheres, sum(own.values()), steps)
+        terms["gravity"] += _lost_energy(spheres, gravity, steps)
     table = terms.assign(work=np.interp(steps, rows["step"], work_of_walls(p, rows)))
     total = terms.sum(axis=1) - table["work"]
     start = spheres.groupby("step")["id"].count().idxmax()  # the first frame with all spheres

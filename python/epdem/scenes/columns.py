@@ -145,9 +145,12 @@ def contact_columns(p: ScenePlan) -> list[str]:
 
 
 def touching(p: ScenePlan, raw: pd.DataFrame) -> pd.DataFrame:
-    """The rows of an engine's contacts without what is only near: of bodies in contact, or attached."""
+    """The rows of an engine's contacts without what is only near: of bodies in contact, or attached.
+
+    Bodies that touch at the start are attached, whose history some engines store from the first step on.
+    """
     touch = raw["overlap"] + raw.get("added_overlap", 0.0) > 0
-    attached = raw["attached"] > 0 if p.model.adheres else touch
+    attached = (raw["attached"] > 0) | (touch & (raw["step"] == 0)) if p.model.adheres else touch
     return raw.assign(attached=attached)[touch | attached]
 
 
@@ -185,8 +188,49 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     known["attached"] = raw["attached"]
     known["screening"] = raw["screening"].where(raw["screening"] > 0.0, 1.0) if p.model.compaction else 1.0  # 0: new
     table = raw[contact_columns(p)[: -len(BY_LAW)]].join(energies(p, known))
+    if p.model.cohesion:
+        table["elastic_energy"] += cohesive_energy(p.model.cohesion, first["radius"], second["radius"], raw["overlap"])
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
+
+
+def cohesive_energy(density: float, one: pd.Series, other: pd.Series, overlap: pd.Series) -> Array:
+    """Potential [J] of the cohesion sjkr, which pulls by an energy density [J/m^3] times the area of the lens in which
+    two spheres overlap, or of the circle in which a sphere cuts a wall; radii (a wall: inf) and overlap [m]."""
+    a, b, delta = (x.to_numpy(float)[:, None] for x in (one, other, overlap.clip(lower=0.0)))
+    s, wall = delta * _NODES, np.isinf(b)
+    b = np.where(wall, a, b)
+    r = a + b - s
+    lens = math.pi / 4 * s * (2 * (a + b) - s) * (r - a + b) * (r + a - b) / r**2
+    area = np.where(wall, math.pi * s * (2 * a - s), lens)
+    return np.asarray(-density * delta[:, 0] * (area @ _WEIGHTS))
+
+
+def with_first_works(p: ScenePlan, spheres: pd.DataFrame, contacts: pd.DataFrame) -> pd.DataFrame:
+    """The table of particles whose frame of the start has the works of the contacts that are there from the start, half
+    for each sphere; some engines book these works in their first step."""
+    begin = contacts[contacts["step"] == 0]
+    works = {"plastic_work": begin["plastic_work"]}
+    if p.model.adheres and "adhesive_work" in p.works and len(begin):
+        works["adhesive_work"] = _lost_at_touch(p, begin, spheres)
+    at_walls, start = begin["j"] == 0, spheres["step"] == 0
+    for name in (name for name in works if name in p.works and len(begin)):
+        part = works[name] * np.where(at_walls, 1.0, 0.5)
+        ends = [part.groupby(begin["i"]).sum(), part[~at_walls].groupby(begin["j"][~at_walls]).sum()]
+        of_sphere = pd.concat(ends).groupby(level=0).sum()
+        spheres.loc[start, name] = spheres["id"][start].map(of_sphere).fillna(0.0)
+    return spheres
+
+
+def _lost_at_touch(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> pd.Series:
+    """Work [J] that each contact with adhesion lost when it formed: its energy at touch, which nothing held."""
+    first, second = bodies(p, contacts, spheres)
+    R_star, lost = reduced(first["radius"], second["radius"]), np.zeros(len(contacts))
+    for (i, j), at in first.groupby([first["type"], second["type"]]).indices.items():
+        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
+        law = spec.adhesive(E_star=E_star, R_star=R_star[at])
+        lost[at] = -law.branch(law.touch_radius)[0].energy(law.touch_radius)
+    return pd.Series(lost, contacts.index)
 
 
 def bodies(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:

@@ -149,13 +149,15 @@ def _by_phase(s: Parts) -> list[Named]:
 
 
 def refuse_positions(s: Parts) -> None:
-    """Raise CaseError for a sphere outside of the room or on its limit, and for one whose centre lies in another one.
+    """Raise CaseError for a sphere outside of the room or on its limit, for one whose centre lies in another one, and
+    for spheres of a later phase that overlap.
 
     Engines lose the former and divide by zero for the latter. A periodic room has no limits in x and y.
     """
     limits = s.room.limits
     sides = [*zip("xyz", limits[0::2], limits[1::2], strict=True)]
-    for group in _by_phase(s):
+    first, *later = _by_phase(s)
+    for group in (first, *later):
         for name, x in group:
             inside = all(
                 low < v < high or (s.periodic and axis != "z" and low <= v <= high)
@@ -166,12 +168,13 @@ def refuse_positions(s: Parts) -> None:
                     f"{name}: {tuple(x.place)} m lies beyond scene.room or on its limit; move it, or enlarge the room"
                 )
         i, j, share = overlaps([x for _, x in group], s)
-        if len(share) and share.max() >= 1.0:
+        most = 1.0 if group is first else TOUCH  # what comes later begins without energy of its own
+        if len(share) and share.max() >= most:
             worst = int(share.argmax())
             one, other = group[max(i[worst], j[worst])][0], group[min(i[worst], j[worst])][0]
             raise CaseError(
-                f"{one}: overlaps {other} by {share[worst]:.0%} of the smaller radius at the start, must be below "
-                "100 %; move one of them"
+                f"{one}: overlaps {other} by {share[worst]:.0%} of the smaller radius as they come, must be "
+                f"{'below 100 %' if group is first else '0'}; move one of them"
             )
 
 
