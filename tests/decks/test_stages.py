@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Each stage by itself, on made-up data whose answer is known."""
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -123,6 +124,23 @@ def test_stored_runs_of_other_laws_stay_while_their_numbers_are_those_of_the_cas
         assert {key.split("/")[0] for key in found.runs} == set(found.predictions) == laws
         assert set(found.comparison["law"]) == laws and found.case_text == changed
         assert found.comparison.groupby("law")["passed"].all().to_dict() == dict.fromkeys(laws, passed)
+
+
+def test_a_stored_table_that_cannot_be_read_is_an_error_and_stays(tmp_path):
+    """Its attribute `columns` is lost. With --fresh the run is made anew."""
+    case, words = tmp_path / "a.toml", {"engines": [engine("embedded")], "out": tmp_path / "out"}
+    case.write_text(STEEL.read_text().replace("count = 32", "count = 3"))
+    run(case, **words)
+    path = tmp_path / "out/results.h5"
+    with h5py.File(path, "r+") as file:
+        del file["impacts/thornton/embedded"].attrs["columns"]
+    damaged = path.read_bytes()
+    os.utime(path, (0, 0))  # damage of a disk leaves the time of a file
+    with pytest.raises(CaseError, match=r"results.h5: .*table /impacts/thornton/embedded: .*case anew \(--fresh\)"):
+        run(case, **words)
+    assert path.read_bytes() == damaged
+    run(case, fresh=True, **words)
+    assert run(case, **words).reused
 
 
 def test_a_write_that_fails_leaves_the_old_results(tmp_path):

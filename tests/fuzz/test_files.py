@@ -16,6 +16,7 @@ from strategies import CASES, damaged
 sys.path.append(str(Path(__file__).parents[1] / "scenes"))
 from stored_runs import RUNS, STORED, planned
 
+from epdem.base.tables import same
 from epdem.engines import engine, scene_engine
 from epdem.errors import EpdemError
 from epdem.impacts import store
@@ -61,18 +62,18 @@ def whole(tmp_path_factory):
     }
 
 
-def _read(read, path, pipe):
+def _read(read, path, pipe, whole):
+    """Sends "" if `path` is read as `whole` is, else what is said of it."""
     try:
-        read(path)
-        pipe.send("")
+        pipe.send("" if same(vars(read(path)), vars(read(whole))) else "other contents, without a word")
     except EpdemError as error:
         pipe.send(str(error))
 
 
-def in_a_child(read, path: Path) -> tuple[int | None, str | None]:
+def in_a_child(read, path: Path, whole: Path) -> tuple[int | None, str | None]:
     """(exit code, words of the error or '') of reading a file; a crash of HDF5 would end this process."""
     reader, writer = multiprocessing.Pipe(duplex=False)
-    child = multiprocessing.get_context("fork").Process(target=_read, args=(read, path, writer))
+    child = multiprocessing.get_context("fork").Process(target=_read, args=(read, path, writer, whole))
     child.start()
     writer.close()
     child.join(30)
@@ -91,8 +92,9 @@ def test_a_damaged_results_file_is_read_or_refused(whole, data):
     raw, read = whole[data.draw(st.sampled_from(sorted(whole)))]
     changed = data.draw(damaged(raw))
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "results.h5"
+        path, as_written = Path(folder) / "results.h5", Path(folder) / "whole.h5"
         path.write_bytes(changed)
-        code, said = in_a_child(read, path)
+        as_written.write_bytes(raw)
+        code, said = in_a_child(read, path, as_written)
         assert code == 0 and said is not None, f"exit code {code}"
         assert said == "" or (str(path) in said and "\n" not in said), said

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is said of runs that left nothing, or something damaged, and of programs that are not there."""
 
+import os
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pandas as pd
 import pytest
@@ -13,12 +15,13 @@ from stored_runs import STORED, planned
 from epdem.base import files, paths, processes
 from epdem.case import impact
 from epdem.case.toml import read_toml
-from epdem.engines import engine, log
+from epdem.engines import engine, log, scene_engine
 from epdem.engines.frames import Frames
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
 from epdem.engines.liggghts import dump, launcher, own_decks
 from epdem.engines.liggghts import tables as scene_tables
+from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.yade import tables as yade_tables
 from epdem.errors import CaseError, EngineError
@@ -106,6 +109,62 @@ def test_frames_and_rows_of_scenes(tmp_path):
     twice.write_bytes(2 * twice.read_bytes())
     with says(r"particles.1250.bin: incomplete \(.*\); run the case again"):
         scene_tables.particles(Frames(p, tmp_path / "run", scene_tables.kinds(p)))
+
+
+@pytest.mark.parametrize("name", ["compaction", "yade_compaction"])
+@pytest.mark.parametrize("damage", ["a word", "a number less", "nan", "no row"])
+def test_a_damaged_row_is_named_and_no_row_behind_it_is_lost(name, damage, tmp_path):
+    """Of 58 rows that of step 250, in the first of three phases."""
+    shutil.copytree(STORED / name, tmp_path / "run")
+    (out,) = (tmp_path / "run").glob("out.*")
+    lines, own = out.read_text().splitlines(), yade_tables if "yade" in name else scene_tables
+    (at,) = (k for k, line in enumerate(lines) if line.split()[:1] == ["250"])
+    words = lines[at].split()
+    changed = {"a word": [*words[:-1], "x"], "a number less": words[:-1], "nan": [*words[:-1], "nan"], "no row": []}
+    assert len(own.rows(planned(name), out)) == 58
+    lines[at] = " ".join(changed[damage])
+    out.write_text("\n".join(lines))
+    with says("the row of step 250 is missing or damaged; run the case again"):
+        own.rows(planned(name), out)
+    assert len(log.rows(out)["Step"].unique()) == 57 + (damage == "nan")
+
+
+@pytest.mark.parametrize(
+    ("name", "file"), [("compaction", "contacts.2850.txt"), ("yade_compaction", "contacts.2100.npy")]
+)
+def test_a_contact_without_a_number_is_no_contact_that_is_left_out(name, file, tmp_path):
+    shutil.copytree(STORED / name, tmp_path / "run")
+    path, own = tmp_path / "run" / file, yade_tables if "yade" in name else scene_tables
+    if path.suffix == ".npy":
+        values = np.load(path)
+        values[0, 2] = np.nan
+        np.save(path, values)
+    else:
+        lines = path.read_text().split("\n")
+        lines[9] = " ".join([*lines[9].split()[:-1], "nan"])
+        path.write_text("\n".join(lines))
+    with says(rf"{file}: incomplete \(row 1 lacks a number\)"):
+        Frames(planned(name), tmp_path / "run", own.kinds(planned(name))).table("contacts")
+
+
+@pytest.mark.liggghts
+def test_a_stored_table_of_a_scene_that_cannot_be_read_is_an_error_and_stays(tmp_path, monkeypatch):
+    tool = scene_engine("liggghts")
+    tables = tool.read(planned("settle"), STORED / "settle")
+    monkeypatch.setattr(Liggghts, "run", lambda *words, **named: dict(tables))
+    case, out = STORED / "settle/case.toml", tmp_path / "out"
+    run.run(case, tool, out=out)
+    stored = (out / "results.h5").stat().st_mtime_ns
+    assert run.run(case, tool, out=out).reused and (out / "results.h5").stat().st_mtime_ns == stored
+    with h5py.File(out / "results.h5", "r+") as file:
+        del file["particles"].attrs["columns"]
+    damaged = (out / "results.h5").read_bytes()
+    os.utime(out / "results.h5", (0, 0))  # damage of a disk leaves the time of a file
+    with says(r"results.h5: .*damaged \(table /particles: .*run the case anew \(--fresh\)", CaseError):
+        run.run(case, tool, out=out)
+    assert (out / "results.h5").read_bytes() == damaged
+    run.run(case, tool, out=out, fresh=True)
+    assert run.run(case, tool, out=out).reused
 
 
 def test_programs_that_are_not_there(tmp_path, monkeypatch):

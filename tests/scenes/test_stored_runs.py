@@ -165,16 +165,20 @@ def test_every_column_has_a_unit_unless_it_is_a_name_or_a_count(stored):
 CONTINUED = """
 Step Atoms KinEng load1[3]
        0        8             0              0
-     630        8          5e-7          1e-3
-    1260        8          2e-6          2e-3
-Loop time of 1 on 1 procs for 1260 steps with 8 atoms
+     625        8          5e-7          1e-3
+    1250        8          2e-6          2e-3
+Loop time of 1 on 1 procs for 1250 steps with 8 atoms
 Step Atoms KinEng load1[3]
-    1260        8          2e-6          2e-3
-    1890        8          9.9           9.9
+    1250        8          2e-6          2e-3
+    1875        8          9.9           9.9
 LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0)
 Step Atoms KinEng load1[3]
-    1260        8          2e-6             0
-    1890        7          4e-6          3e-3
+    1250        8          2e-6             0
+    1875        7          4e-6          3e-3
+    2500        7          4e-6          3e-3
+    3125        7          4e-6          3e-3
+    3750        7          4e-6          3e-3
+    4375        7          4e-6          3e-3
     5000        7          4e-6          3e-3
 """
 
@@ -182,10 +186,10 @@ Step Atoms KinEng load1[3]
 def test_a_continued_log_keeps_the_row_of_its_restart_and_replaces_what_came_after_it(tmp_path):
     (tmp_path / "log").write_text(CONTINUED)
     rows = scene_tables.rows(planned("settle"), tmp_path / "log")
-    assert rows["step"].to_list() == [0, 630, 1260, 1890, 5000]
+    assert rows["step"].to_list() == [*range(0, 5001, 625)]
     # of a plane the log has the force on spheres
-    assert (-rows["floor_force_z"]).to_list() == [0, 1e-3, 2e-3, 3e-3, 3e-3]
-    assert rows["particles"].to_list() == [8, 8, 8, 7, 7]
+    assert (-rows["floor_force_z"]).to_list() == [0, 1e-3, 2e-3, *[3e-3] * 6]
+    assert rows["particles"].to_list() == [8] * 3 + [7] * 6
 
 
 @pytest.mark.parametrize("cut", [1, 5, 60, 10_000])

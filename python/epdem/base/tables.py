@@ -46,7 +46,23 @@ def write_attributes(target: h5py.HLObject, values: Mapping[str, object]) -> Non
 
 def attributes(target: h5py.HLObject) -> dict[str, Any]:
     """The attributes of a group or dataset, texts as str."""
-    return {name: value.decode() if isinstance(value, bytes) else value for name, value in target.attrs.items()}
+    values = {name: target.attrs[name] for name in target.attrs}
+    return {name: value.decode() if isinstance(value, bytes) else value for name, value in values.items()}
+
+
+def members(group: h5py.Group, place: str = "") -> Iterator[tuple[str, h5py.Group | h5py.Dataset]]:
+    """Names and members of a group, or of the one at a `place` in it, if there is one.
+
+    Raises KeyError for a member that cannot be read, for which items() of h5py has None.
+    """
+    if place and place not in group:
+        return
+    for name in group[place] if place else group:
+        path = f"{place}/{name}" if place else name
+        try:
+            yield name, group[path]
+        except KeyError as error:
+            raise KeyError(f"{path}: {error}") from None
 
 
 def write_text(group: h5py.Group, name: str, text: str) -> None:
@@ -69,7 +85,7 @@ def open_results(path: Path | str, what: str) -> Iterator[h5py.File]:
         raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None
     except Exception as error:  # HDF5 reports damage by almost any of them
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise CaseError(f"{path}: not {what}, or damaged ({reason}); run the case again") from None
+        raise CaseError(f"{path}: not {what}, or damaged ({reason}); run the case anew (--fresh)") from None
 
 
 def write_array(group: h5py.Group, name: str, data: np.ndarray, *, checksum: bool = True) -> h5py.Dataset:
@@ -93,20 +109,25 @@ def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -
 def read_table(group: h5py.Group) -> pd.DataFrame:
     """The table that `write_table` stored in `group`, with the units of its columns in `attrs["units"]`."""
     columns, units = {}, {}
-    for name in (name.decode() for name in group.attrs["columns"]):
-        data = group[name][()]
-        columns[name] = [v.decode() for v in data] if data.dtype.kind == "S" else data
-        if unit := attributes(group[name]).get("unit"):
-            units[name] = unit
+    try:
+        for name in (name.decode() for name in group.attrs["columns"]):
+            data = group[name][()]
+            columns[name] = [v.decode() for v in data] if data.dtype.kind == "S" else data
+            if unit := attributes(group[name]).get("unit"):
+                units[name] = unit
+    except Exception as error:  # HDF5 reports damage by almost any of them
+        raise ValueError(f"table {group.name}: {error}") from None
     table = pd.DataFrame(columns)
     table.attrs["units"] = units
     return table
 
 
 def same(one: object, other: object) -> bool:
-    """Whether two objects, mappings of objects or tables are equal, of tables columns and types, too."""
+    """Whether two objects, mappings of objects or tables are equal, of tables with rows their types, too."""
     if isinstance(one, pd.DataFrame):
-        return isinstance(other, pd.DataFrame) and bool(one.equals(other))
+        if not isinstance(other, pd.DataFrame) or list(one) != list(other):
+            return False
+        return len(one) == len(other) == 0 or bool(one.equals(other))
     if isinstance(one, Mapping):
         there = isinstance(other, Mapping) and one.keys() == other.keys()
         return there and all(same(value, other[name]) for name, value in one.items())  # type: ignore[index]

@@ -5,6 +5,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
@@ -46,7 +47,13 @@ class Frames:
 
 def _read(path: Path, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
     try:
-        return read(path)
+        table = read(path)
+        if path.name.startswith("particles"):  # a sphere without numbers is named by all its frame
+            return table
+        lost = ~np.isfinite(table.select_dtypes("number").to_numpy(float)).all(axis=1)
+        if lost.any():
+            raise ValueError(f"row {int(lost.argmax()) + 1} lacks a number")
+        return table
     except EngineError:
         raise
     except Exception as error:  # of a damaged head numpy says almost anything

@@ -4,6 +4,7 @@
 import math
 import re
 from collections.abc import Collection
+from contextlib import suppress
 from pathlib import Path
 
 import pandas as pd
@@ -39,12 +40,12 @@ def rows(log: Path) -> pd.DataFrame:
         fields = line.split()
         if fields[:1] == ["Step"]:
             names, run = fields, run + 1
+        elif fields[:2] == ["Loop", "time"]:
+            names = []  # the rows of this run are over
         elif names and len(fields) == len(names) and fields[0].isdigit():
-            try:
+            with suppress(ValueError):
                 values = map(float, fields[1:])
                 table.append({"run": run, "Step": int(fields[0])} | dict(zip(names[1:], values, strict=True)))
-            except ValueError:
-                names = []  # the rows of this run are over
     return pd.DataFrame(table)
 
 
@@ -58,7 +59,7 @@ def _column(p: ScenePlan, word: str) -> str | None:
 
 
 def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.DataFrame:
-    """The rows: one per step. Raises EngineError if the last one is not that of the last step.
+    """The rows: one per step. Raises EngineError if one is missing or damaged, or holds a number that is not finite.
 
     on_spheres: walls whose forces in the log act on the spheres.
 
@@ -76,6 +77,9 @@ def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.
         table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
     if (last := max(table)) != p.steps:
         raise EngineError(f"{out}: the rows end at step {last} of {p.steps}; run the case again")
+    for step in range(0, p.steps, p.every):
+        if not all(map(math.isfinite, table.get(step, [math.nan]))):
+            raise EngineError(f"{out}: the row of step {step} is missing or damaged; run the case again")
     found = columns.rows(p, table, [*words.values()])
     opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
     found[opposite] = -found[opposite]

@@ -76,12 +76,14 @@ def _facts(p: Plan) -> object:
     return x.law, x.body, x.target, x.viscous_restitution, friction, numbers
 
 
-def stored_results(path: Path) -> store.Results:
-    """The results in a file; none of one that is missing or damaged."""
+def stored_results(path: Path, *, fresh: bool = False) -> store.Results:
+    """The results in a file; none of one that is missing, or with `fresh` damaged. Raises CaseError."""
     try:
-        return store.read(path)
+        return store.read(path) if path.exists() else store.Results()
     except CaseError:
-        return store.Results()
+        if fresh:
+            return store.Results()
+        raise
 
 
 def _stage(results: store.Results, key: str) -> Stage | None:
@@ -217,7 +219,7 @@ def run(
     outcome = prepare(loaded, tools, laws, ranks, folder)
     versions, path = {tool.name: tool.version() for tool in tools}, folder / "results.h5"
     with claim(folder, force=force):
-        old = stored_results(path)
+        old = stored_results(path, fresh=fresh)
         kept = _kept(outcome, old)
 
         def keep() -> None:

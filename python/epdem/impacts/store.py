@@ -52,14 +52,14 @@ def read(path: Path | str) -> Results:
     """The results in an HDF5 file that `write` made. Raises CaseError."""
     with h5.open_results(path, "a results file of epdem") as file:
         results = Results(h5.read_text(file["case"]), h5.attributes(file), h5.read_table(file["comparison"]))
-        for law, group in file.get("predictions", {}).items():
+        for law, group in h5.members(file, "predictions"):
             results.predictions[law] = h5.read_table(group)
-        for law, engines in file.get("impacts", {}).items():
-            for engine, group in engines.items():
+        for law, engines in h5.members(file, "impacts"):
+            for engine, group in h5.members(engines):
                 key = f"{law}/{engine}"
                 results.impacts[key] = h5.read_table(group)
                 results.paths[key] = h5.read_table(file[f"paths/{key}"])
                 results.runs[key] = {k: v for k, v in h5.attributes(group).items() if k != "columns"}
-                for name, text in file.get(f"decks/{key}", {}).items():
+                for name, text in h5.members(file, f"decks/{key}"):
                     results.decks[f"{key}/{name}"] = h5.read_text(text)
         return results

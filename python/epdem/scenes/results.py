@@ -75,12 +75,12 @@ def read(path: Path | str) -> SceneResults:
     """The results in a file that `write` made. Raises CaseError."""
     with h5.open_results(path, "a results file of a scene") as file:
         results = SceneResults(h5.read_text(file["case"]), h5.attributes(file))
-        for name, group in file.items():
-            if "columns" in getattr(group, "attrs", {}):
+        for name, group in h5.members(file):
+            if isinstance(group, h5py.Group) and name not in ("VTKHDF", "decks", FILES):
                 results.tables[name] = h5.read_table(group)
-        results.decks = {name: h5.read_text(text) for name, text in file.get("decks", {}).items()}
-        stored = file[FILES].values() if FILES in file else None
-        results.files = None if stored is None else {h5.attributes(x)["name"]: x[()].tobytes() for x in stored}
+        results.decks = {name: h5.read_text(text) for name, text in h5.members(file, "decks")}
+        stored = {h5.attributes(x)["name"]: x[()].tobytes() for _, x in h5.members(file, FILES)}
+        results.files = stored if FILES in file else None
         return results
 
 

@@ -54,11 +54,11 @@ def _facts(p: ScenePlan) -> object:
 
 
 def _stored(folder: Path, key: str) -> results.SceneResults | None:
-    """The results in a folder if they belong to these inputs."""
-    try:
-        old = results.read(folder / "results.h5")
-    except CaseError:
-        return None  # of another version: made anew
+    """The results in a folder if they belong to these inputs. Raises CaseError for a damaged file."""
+    path = folder / "results.h5"
+    if not path.exists():
+        return None
+    old = results.read(path)
     return old if old.attributes.get("inputs") == key else None
 
 

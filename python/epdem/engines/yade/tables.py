@@ -54,7 +54,10 @@ def kinds(p: ScenePlan) -> Kinds:
 
 
 def _frame(path: Path, names: list[str]) -> pd.DataFrame:
-    return pd.DataFrame(np.load(path), columns=names)
+    table = pd.DataFrame(np.load(path), columns=names)
+    if "overlap" in names:
+        table["delta_max"] = table["delta_max"].fillna(table["overlap"])  # of a law without history
+    return table
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
@@ -74,7 +77,6 @@ def particles(frames: Frames) -> pd.DataFrame:
 def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame."""
     p, raw, folder = frames.plan, frames.table("contacts"), frames.folder
-    raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     walls = np.array(["", *wall_names(p)])
     last = p.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
