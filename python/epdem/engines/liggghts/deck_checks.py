@@ -13,12 +13,11 @@ import numpy as np
 from ...base.declarations import declarations
 from ...case.toml import text_of
 from ...errors import CaseError
-from .own_decks import HYSTERESIS, commands
+from .own_decks import HYSTERESIS, commands, number, variable
 
 LARGEST_RATIO = 10.0  # of adhesion stiffness over loading stiffness; of materials below 1
 LARGEST_STRENGTH = 0.1  # of E*, above which contacts stay elastic up to overlaps of 2.5 % of R*
 RAYLEIGH = 1.0  # largest time step over Rayleigh's time of the smallest sphere
-_VARIABLE = re.compile(r"\$\{(\w+)\}|\$(\w)")
 
 
 @dataclass
@@ -39,11 +38,7 @@ class _Deck:
 
     def number(self, word: str) -> float:
         """The value of a word; NaN if the deck computes it."""
-        word = _VARIABLE.sub(lambda m: self.known.get(m[1] or m[2], "nan"), word)
-        try:
-            return float(word)
-        except ValueError:
-            return math.nan
+        return number(word, self.known)
 
     def values(self, name: str) -> list[float]:
         """The values of a property; none if it is absent."""
@@ -53,9 +48,8 @@ class _Deck:
 def _read(text: str, place: Path) -> _Deck:
     deck = _Deck()
     for where, words in commands(text, place):
+        deck.known |= variable(words)
         match words:
-            case ["variable", name, "equal" | "string" | "index", value, *_]:
-                deck.known[name] = value.strip("\"'")
             case ["fix", _, _, "property/global", name, kind, *values]:
                 values = values[1:] if kind == "peratomtypepair" else values
                 deck.properties[name] = (where, [deck.number(v) for v in values])

@@ -45,6 +45,8 @@ SETTINGS = (  # of these models, refused or unknown beside a law
     "computeDissipatedEnergy",
     "disableNormalWhenBonded",
 )
+_OLD_MODEL = re.compile(r"(wall/)?gran/(hertz|hooke)(/history)?")
+_VARIABLE = re.compile(r"\$\{(\w+)\}|\$(\w)")
 # A command with its continuation lines and its comment; a word, quoted or not.
 _COMMAND = re.compile(r"(?:[^&\n]|&(?![ \t\r]*(?:\n|$)))*(?:&[ \t\r]*(?:\n|$)(?:[^&\n]|&(?![ \t\r]*(?:\n|$)))*)*\n?")
 _WORD = re.compile(r"\"\"\".*?\"\"\"|\"[^\"]*\"|'[^']*'|#.*|(?:[^\s&#\"']|&(?![ \t\r]*(?:\n|$)))+", re.DOTALL)
@@ -81,6 +83,49 @@ def _replace_model(command: str, words: list[re.Match[str]], law: Declaration, p
     return command, notes
 
 
+def _renewed(text: str, place: Path) -> tuple[str, list[str]]:
+    """The deck with the words of today for the contact models of LIGGGHTS 1.5 and 2 (`gran/hertz/history`); sentences
+    on them. Raises CaseError for what has no or several meanings today."""
+    parts, notes = [], []
+    for command, where, words in _split(text, place):
+        texts = [word.group() for word in words]
+        at = 1 if texts[:1] == ["pair_style"] else 3 if texts[:1] == ["fix"] else len(texts)
+        if found := _OLD_MODEL.fullmatch(texts[at] if at < len(texts) else ""):
+            new = [f"{found[1]}gran", "model", found[2], *(["tangential", "history"] if found[3] else [])]
+            new += _old_flags(texts[at + 1 :], where) if found[1] else _flags(texts[at + 1 :])
+            start, end = words[at].start(), words[-1].end()
+            notes.append(f"{where}: '{' '.join(texts[at:])}' is '{' '.join(new)}' today")
+            command = command[:start] + " ".join(new) + command[end:]
+        parts.append(command)
+    return "".join(parts), notes
+
+
+def _flags(words: list[str]) -> list[str]:
+    """Settings of today for the flags of LIGGGHTS 1.5 (tangential damping, cohesion); other words stay."""
+    if not {*words[:2]} <= {"0", "1"} or len(words) < 2:
+        return words
+    cohesion = ["cohesion", "sjkr"] if words[1] == "1" else []
+    return [*cohesion, *(["tangential_damping", "off"] if words[0] == "0" else []), *words[2:]]
+
+
+def _old_flags(words: list[str], where: str) -> list[str]:
+    """The words behind a wall's model: the flags and the wall of LIGGGHTS 1.5 in words of today; other words stay."""
+    match words:
+        case ["0" | "1", "0" | "1", "xplane" | "yplane" | "zplane" as kind, low, high, number] if "NULL" in (low, high):
+            wall = [kind, high if low == "NULL" else low]
+        case ["0" | "1", "0" | "1", "xcylinder" | "ycylinder" | "zcylinder" as kind, radius, number]:
+            wall = [kind, radius, "0", "0"]
+        case ["0" | "1", "0" | "1", *_]:
+            raise CaseError(
+                f"{where}: {' '.join(words[2:])}: no single wall of today; write one fix wall/gran with primitive type "
+                "N for each plane, or fix mesh/surface for a mesh"
+            )
+        case _:
+            return words
+    flags = _flags(words[:2])
+    return [*flags[:2] * ("cohesion" in flags), "primitive", "type", number, *wall, *flags[-2:] * (words[0] == "0")]
+
+
 def commands(text: str, place: object) -> Iterator[tuple[str, list[str]]]:
     """(place, words without the comment) of each command of a deck."""
     for _, where, words in _split(text, place):
@@ -102,19 +147,30 @@ def _with_words(command: str, words: list[re.Match[str]], new: list[str]) -> str
     return command
 
 
-def _numbers(place: str, texts: list[str]) -> list[float]:
+def number(word: str, known: Mapping[str, str]) -> float:
+    """The value of a word of a deck with the `known` variables; NaN if the deck computes it."""
+    word = _VARIABLE.sub(lambda m: known.get(m[1] or m[2], "nan"), word)
     try:
-        return [float(text) for text in texts]
+        return float(word)
     except ValueError:
-        raise CaseError(f"{place}: {' '.join(texts)!r} is no list of numbers; write the numbers") from None
+        return math.nan
+
+
+def variable(words: list[str]) -> dict[str, str]:
+    """The variable with a plain value that a command defines, if it does."""
+    match words:
+        case ["variable", name, "equal" | "string" | "index", value, *_]:
+            return {name: value.strip("\"'")}
+    return {}
 
 
 def _with_modulus(text: str, given: str, place: Path) -> tuple[str, list[str]]:
     """The deck with the `given` youngsModulus, one value or one for each type, the time step that it needs, and
     properties of hooke/hysteresis as comments; sentences on the changes."""
-    parts, notes, growth = [], [], 1.0
+    parts, notes, growth, known = [], [], 1.0, dict[str, str]()
     for command, where, words in _split(text, place):
         texts = [word.group() for word in words]
+        known |= variable(texts)
         name = texts[4] if texts[:1] == ["fix"] and texts[3:4] == ["property/global"] and len(texts) > 5 else ""
         if name in WITHOUT_COUNTERPART:
             notes.append(f"{where}: {name} is dropped: {WITHOUT_COUNTERPART[name]}")
@@ -122,11 +178,14 @@ def _with_modulus(text: str, given: str, place: Path) -> tuple[str, list[str]]:
         elif name == MODULUS:
             old, new = words[6:], given.split(",")
             new = new * len(old) if len(new) == 1 else new
-            values, before = _numbers(f"--set {MODULUS}", new), _numbers(where, texts[6:])
-            if len(new) != len(old) or min(values) <= 0.0:
+            values, before = ([number(word, known) for word in each] for each in (new, texts[6:]))
+            if len(new) != len(old) or not all(v > 0.0 for v in values):
                 raise CaseError(f"--set {MODULUS}={given}: give one value > 0, or {len(old)}, one for each type")
             command = _with_words(command, old, new)
-            growth = max(values) / max(before)
+            growth = max(growth, *(now / was for now, was in zip(values, before, strict=True) if was > 0.0))
+            if any(was != was for was in before):
+                computed = " ".join(texts[6:])
+                notes.append(f"{where}: {computed} is computed: give sqrt(E before/E now) of the time step by hand")
         parts.append(command)
     parts, steps = _shorter_steps(parts, place, growth)
     return "".join(parts), notes + steps
@@ -155,14 +214,14 @@ def _property_lines(law: Declaration, given: dict[str, str], present: set[str], 
             if p.default is None:
                 raise CaseError(f"{place}: ep/{law.name} needs {name} [{p.unit}]; add --set {name}=VALUE")
             continue
-        try:
-            number = float(given[name])
-        except ValueError:
-            number = math.nan
-        if not p.holds(number):
-            raise CaseError(f"--set {name}={given[name]}: must lie in {p.limits()} in the units of the deck [{p.unit}]")
         head, count = (f"peratomtypepair {types}", types * types) if p.of_pair else ("peratomtype", types)
-        values = " ".join([given[name]] * count)
+        texts = given[name].split(",")
+        if not all(p.holds(number(text, {})) for text in texts):
+            raise CaseError(f"--set {name}={given[name]}: must lie in {p.limits()} in the units of the deck [{p.unit}]")
+        if len(texts) not in (1, count):
+            of = "pair of types" if p.of_pair else "type"
+            raise CaseError(f"--set {name}={given[name]}: give one value, or {count}, one for each {of}")
+        values = " ".join(texts * (count // len(texts)))
         lines.append(f"fix epdem_{name} all property/global {name} {head} {values}\n")
     return lines
 
@@ -176,6 +235,7 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
     law = declarations().get(law_name)
     if law is None:
         raise CaseError(f"--law {law_name}: does not exist; there are {', '.join(declarations())}")
+    text, renewed = _renewed(text, place)
     modulus = given.get(MODULUS)
     given = {name: value for name, value in given.items() if name != MODULUS}
     if modulus is None and any(HYSTERESIS in words for _, words in commands(text, place)):
@@ -185,7 +245,7 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
         )
     changed, changes = (text, []) if modulus is None else _with_modulus(text, modulus, place)
     parts: list[str] = []
-    notes: list[str] = []
+    notes: list[str] = renewed
     present: set[str] = set()
     models = moduli = types = 0
     for command, where, words in _split(changed, place):
@@ -197,7 +257,7 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
         elif texts[:1] == ["fix"] and texts[3:4] == ["property/global"]:
             present.add(texts[4] if len(texts) > 4 else "")
             if texts[4:6] == ["youngsModulus", "peratomtype"]:
-                types, moduli = len(texts) - 6, len(parts) + 1
+                types, moduli = len(texts) - 6, moduli or len(parts) + 1  # before the first run
                 command += "" if command.endswith("\n") else "\n"
         elif texts[:1] in (["include"], ["jump"]) and len(texts) > 1:
             notes.append(f"{where}: the file {texts[1]} is left as it is; convert it too if it names a contact model")
@@ -228,8 +288,8 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
 
 
 def _shorter_steps(parts: list[str], place: Path, growth: float) -> tuple[list[str], list[str]]:
-    """The commands with the time step that a stiffest modulus `growth` times larger needs: contacts of the same radius
-    have a stiffness proportional to it."""
+    """The commands with the time step that a modulus `growth` times larger needs, of the type that stiffens most:
+    contacts of the same radius have a stiffness proportional to it."""
     if growth <= 1.0:
         return parts, []
     factor, done, notes = growth**-0.5, [], []
