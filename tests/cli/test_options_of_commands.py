@@ -15,7 +15,6 @@ from calls import CASES, COMMANDS, call, make_sweep
 
 from epdem.engines import engine
 from epdem.errors import CaseError
-from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
@@ -156,10 +155,8 @@ def library(tmp_path, monkeypatch, outcomes):
         monkeypatch.setattr(module, name, replacement)
 
     record(impacts_run, "run", outcomes["run"])
-    record(impacts_report, "figure", Path("drawn.png"))
     record(pages, "write_impacts_page", Path("page.html"))
     record(scenes_run, "run", SimpleNamespace(passed=True))
-    record(scenes_report, "figures", ())
     record(scenes_report, "shown", ())
     record(scenes_report, "document", {})
     record(pages, "write_scene_page", Path("page.html"))

@@ -139,7 +139,7 @@ def test_a_deck_with_hysteresis_gets_its_real_modulus_a_strength_and_shorter_ste
     assert lines[2] == "fix m1 all property/global youngsModulus peratomtype 140e9 24e9  # softened"
     assert lines[3] == "fix epdem_yieldPressure all property/global yieldPressure peratomtype 1.9e9 1.9e9"
     assert "pair_style gran model ep/thornton tangential history cohesion sjkr" in lines
-    assert "timestep 3.16e-08" in lines  # sqrt(1.4e8/140e9)
+    assert "timestep 7.5e-09" in lines  # sqrt(1.35e6/24e9) of 1e-6: type 2 stiffens most
     assert [line.split()[1] for line in lines if line.startswith("#")] == ["m6", "m7", "m8", "m9"]
     said = "\n".join(done.notes)
     assert all(f"my.in, line {n}: " in said for n in (6, 7, 8, 9)) and "epdem soften" in said
@@ -149,6 +149,82 @@ def test_a_deck_with_hysteresis_gets_its_real_modulus_a_strength_and_shorter_ste
         converted(HYSTERESIS, "thornton_ning", youngsModulus="24e9", yieldPressure="1.9e9", workOfAdhesion="0.1")
     with pytest.raises(CaseError, match="give one value > 0, or 2, one for each type"):
         converted(HYSTERESIS, youngsModulus="1e9,2e9,3e9", yieldPressure="1.9e9")
+
+
+SOFT = """units si
+variable E equal 1e9
+fix m1 all property/global youngsModulus peratomtype 1e7 ${E}
+fix m2 all property/global poissonsRatio peratomtype 0.3 0.3
+pair_style gran model hertz tangential history
+timestep 1e-5
+run 10
+fix m1 all property/global youngsModulus peratomtype 1e7 1e9
+run 10
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "step"),
+    [("2e9,1e9", "7.07e-07"), ("1e9", "1e-06"), ("1e7,4e9", "5e-06"), ("1e7,1e9", None), ("1e6,1e9", None)],
+)
+def test_the_time_step_follows_the_type_that_stiffens_most(given, step):
+    """sqrt(1e7/2e9) = 0.0707; sqrt(1e7/1e9) = 0.1; sqrt(1e9/4e9) = 0.5, of a modulus that is a variable."""
+    done = converted(SOFT, youngsModulus=given, yieldPressure="1e6")
+    assert f"timestep {step or '1e-5'}\n" in done.text and ("correct run" in "".join(done.notes)) == bool(step)
+
+
+def test_a_modulus_that_the_deck_computes_leaves_the_time_step_to_the_user():
+    deck = SOFT.replace("equal 1e9", "equal 2*5e8").replace("peratomtype 1e7 1e9", "peratomtype 1e7 ${E}")
+    done = converted(deck, youngsModulus="1e7,4e9", yieldPressure="1e6")
+    assert "timestep 1e-5\n" in done.text
+    assert "my.in, line 3: 1e7 ${E} is computed: give sqrt(E before/E now) of the time step by hand" in done.notes
+
+
+def test_a_strength_of_each_type_stands_before_the_first_run():
+    done = converted(SOFT, yieldPressure="1e6,2e6").text.splitlines()
+    assert done[3] == "fix epdem_yieldPressure all property/global yieldPressure peratomtype 1e6 2e6"
+    with pytest.raises(CaseError, match="yieldPressure=1,2,3: give one value, or 2, one for each type"):
+        converted(SOFT, yieldPressure="1,2,3")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("pair_style gran/hertz/history 1 0 # old", "pair_style gran model ep/thornton tangential history # old"),
+        (
+            "pair_style gran/hooke/history 0 1",
+            "pair_style gran model ep/thornton tangential history cohesion sjkr tangential_damping off",
+        ),
+        (
+            "pair_style gran/hertz/history rolling_friction cdt",
+            "pair_style gran model ep/thornton tangential history rolling_friction cdt",
+        ),
+        (
+            "fix w all wall/gran/hertz/history 1 0 zplane 0.01 NULL 2",
+            "fix w all wall/gran model ep/thornton tangential history primitive type 2 zplane 0.01",
+        ),
+        (
+            "fix w all wall/gran/hertz/history 0 1 zcylinder 0.05 1",
+            "fix w all wall/gran model ep/thornton tangential history cohesion sjkr primitive type 1 zcylinder "
+            "0.05 0 0 tangential_damping off",
+        ),
+        (
+            "fix w all wall/gran/hertz/history primitive type 1 zplane 0.0",
+            "fix w all wall/gran model ep/thornton tangential history primitive type 1 zplane 0.0",
+        ),
+    ],
+)
+def test_models_of_liggghts_1_and_2_are_those_of_today(old, new):
+    done = converted(f"{SOFT}{old}\n", yieldPressure="1e6")
+    assert new in done.text.splitlines() and any(
+        note.startswith("my.in, line 10: 'gran/") or "wall/gran/" in note for note in done.notes
+    )
+
+
+@pytest.mark.parametrize("wall", ["zplane 0.0 0.2 1", "mesh/gran 1 cad"])
+def test_a_wall_that_is_no_single_one_of_today_names_its_line(wall):
+    with pytest.raises(CaseError, match=rf"line 10: {wall}: no single wall of today; write one fix wall/gran"):
+        converted(f"{SOFT}fix w all wall/gran/hertz/history 1 0 {wall}\n", yieldPressure="1e6")
 
 
 def test_the_check_names_inputs_that_are_probably_wrong():

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem.base import files
+from epdem.base import files, processes
 from epdem.base.files import LOCK, MARKER, TEMPORARY, atomic, claim
 from epdem.errors import CaseError
 
@@ -201,3 +201,34 @@ def test_what_a_killed_process_was_writing_goes_with_the_next_run(tmp_path):
     with claim(tmp_path):
         assert not [*tmp_path.rglob(f"{TEMPORARY}*")]
     assert (tmp_path / ".mine").read_text() == "of the user" and places[1].read_text() == "deck"
+
+
+@pytest.mark.parametrize("place", ["", "thornton/liggghts"])
+def test_a_run_waits_for_the_engine_of_a_killed_one(place, tmp_path, monkeypatch):
+    """The engine is a process that `call` starts; here in a child that is killed, as by kill -9."""
+    own, out = tmp_path / "out" / place, tmp_path / "out"
+    own.mkdir(parents=True)
+    program = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print(1, flush=True); time.sleep(3)"
+    starts = f"from pathlib import Path\nfrom epdem.base.processes import call\ncall([{sys.executable!r}, '-c', "
+    child = subprocess.Popen([sys.executable, "-c", f'{starts}"""{program}"""], Path({str(own)!r}), log="out.x")'])
+    while not ((own / "out.x").exists() and (own / "out.x").read_text()):
+        time.sleep(0.01)
+    child.kill()
+    child.wait()
+    with monkeypatch.context() as soon:
+        soon.setattr(files, "PATIENCE", 0.1)
+        with pytest.raises(CaseError, match=r"out: process \d+ of an earlier run still writes here; wait for its end"):
+            claim(out, force=True).__enter__()
+    (out / "other").mkdir()
+    with claim(out / "other"):
+        assert processes.engines_in(out.resolve())
+    with claim(out, force=True):
+        assert not processes.engines_in(out.resolve())
+
+
+def test_a_log_of_a_run_is_its_own_file(tmp_path):
+    """A process that still writes the log of an earlier run writes no line of this one."""
+    with (tmp_path / "out.x").open("w") as earlier:
+        processes.call(["echo", "new"], tmp_path, log="out.x")
+        earlier.write("old\n")
+    assert (tmp_path / "out.x").read_text() == "new\n"

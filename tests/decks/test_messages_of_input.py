@@ -249,7 +249,7 @@ def test_outputs_that_a_scene_of_parts_does_not_have(tmp_path):
         ("x,y,radius\n0,0,0.001\n", "column 'z' is missing"),
         (
             "x,y,z,radius [mm]\n0,0,0.01,1\n",
-            "unknown column 'radius'; there are x, y, z, radius, material, vx, vy, vz, in SI",
+            "column 'radius [mm]': heads have no units; write 'radius' and SI numbers",
         ),
         ("x,y,z,z\n0,0,0.01,1\n", "two columns have the same head; keep one"),
         ("x,y,z,radius,material\n0,0,0.01,0.001,glass\n", "give the material in the file or in the case"),

@@ -54,14 +54,15 @@ def product(tmp_path, monkeypatch):
 def test_a_change_of_the_product_is_a_new_hash(product, changed):
     folder, names = product
 
-    def hashed():
+    def hashed(**given):
         paths.product_hash.cache_clear()
-        return paths.product_hash()
+        return paths.product_hash(**given)
 
-    first = hashed()
+    first, read = hashed(), hashed(sources=False)
     assert hashed() == first
     (folder / names[changed]).write_text("second")
     second = hashed()
+    assert (hashed(sources=False) == read) == names[changed].endswith(".py")  # which no engine reads
     (folder / names[changed]).unlink()  # as a launcher that the environment names and that is not there
     assert len({first, second, hashed()}) == 3
 

@@ -155,11 +155,12 @@ def test_an_stl_file_may_be_binary_or_a_text_in_any_encoding(tmp_path):
     write_stl(tmp_path / "wall.stl", tetrahedron(10.0))
     text = (tmp_path / "wall.stl").read_text()
     named = text.replace("solid wall", "solid Gehäuse").encode("latin-1")
-    for raw in (text.encode(), named, binary_stl(tetrahedron(10.0), 4, b"solid bowl")):
+    for raw in (text.encode(), named, binary_stl(tetrahedron(10.0), 4, b"solid bowl"), text.upper().encode()):
         (tmp_path / "wall.stl").write_bytes(raw)
         data = parts(wall=[FLOOR, STL | {"scale": 1e-3}])
         found.append(plan(parse(data, tmp_path / "case.toml")).triangles["bowl"])
     assert found[1] == pytest.approx(found[0]) and found[2] == pytest.approx(found[0])
+    assert found[3] == pytest.approx(found[0])
 
 
 def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):

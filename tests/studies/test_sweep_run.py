@@ -81,7 +81,7 @@ def test_the_same_sweep_again_runs_nothing_and_a_larger_one_what_is_new(case, tm
 
 def test_another_version_of_the_product_runs_all_again(case, tmp_path, monkeypatch):
     assert sweep(case, tmp_path / "out").ran == 3
-    monkeypatch.setattr("epdem.base.paths.product_hash", lambda: "another")
+    monkeypatch.setattr("epdem.base.paths.product_hash", lambda **_: "another")
     assert sweep(case, tmp_path / "out").ran == 3
 
 

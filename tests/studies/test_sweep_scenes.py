@@ -14,6 +14,8 @@ import pytest
 
 from epdem import Scene
 from epdem import run as api_run
+from epdem.engines.liggghts.engine import Liggghts
+from epdem.errors import EngineError
 from epdem.scenes import results
 from epdem.studies.pages import _by_key, write_sweep_page
 from epdem.studies.sweep import folder, run, slurm
@@ -139,6 +141,26 @@ def test_a_program_reads_in_its_log_how_far_a_scene_is(bed, tmp_path, caplog):
     steps = api_run(scene, out=tmp_path / "out").outcome.plan.steps
     said = [record.getMessage() for record in caplog.records]
     assert len(said) > 5 and said[-1] == f"bed: step {steps} of {steps}"
+
+
+def test_an_engine_that_dies_in_a_resumed_scene_is_a_failed_point(bed, tmp_path, monkeypatch):
+    """It does not begin again from step 0: `run` of the engine is not called."""
+    bed.write_text(BED.replace("restarts = 0", "restarts = 10"))
+    planned, out, calls = run.plan(bed, {"scene.count": "20"}), tmp_path / "out", []
+    run.run(planned, out, jobs=1)
+    place = folder.point_folder(planned, out, 1)
+    (place / "results.h5").unlink()  # as if it had been killed
+    assert any(place.glob("restart.*.bin"))
+
+    def dies(*words, **named):
+        calls.append("resume")
+        raise EngineError("the engine has died")
+
+    monkeypatch.setattr(Liggghts, "resume", dies)
+    monkeypatch.setattr(Liggghts, "run", lambda *words, **named: calls.append("run"))
+    run.evaluate(planned, out, 1)
+    about = folder.record(planned, out, 1)
+    assert calls == ["resume"] and (about["state"], about["reason"]) == ("failed", "the engine has died")
 
 
 def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):

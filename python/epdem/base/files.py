@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from ..errors import CaseError
+from .processes import POLL, engines_in
 
 TEMPORARY = ".epdem-tmp-"  # how the names of files begin that are not yet complete
 
@@ -74,11 +75,12 @@ def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
 
 
 LOCK, MARKER = ".epdem.lock", ".epdem.json"
+PATIENCE = 20.0  # [s] for the engine of a run that was killed
 # Names that a run may write, in the folder or below it.
 OUTPUTS = re.compile(
     r"(in|results|out|particles|contacts|triangles|restart|picture|path)\..*|(contacts_|wall_contacts|scene|stress_).*"
     r"|.*\.(in|png|svg|pdf|data|stl|so)|(spheres.*|fill[1-9].*|wall_.*|end)\.txt|report\.html|impact\.py"
-    r"|(e_n|psi|energy|figure_8_.*|thornton_ning_1998)\.csv",
+    r"|(e_n|psi|key|energy|figure_8_.*|thornton_ning_1998)\.csv",
     re.DOTALL,
 )
 
@@ -137,11 +139,14 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
     if place in _held:
         yield _held[place]
         return
+    if file := next((p for p in (folder, *folder.parents) if p.exists() and not p.is_dir()), None):
+        raise CaseError(f"{folder}: {file} is a file; name a folder by --out")
     made = [p for p in (folder, *folder.parents) if not p.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with (folder / LOCK).open("a+") as lock:
             _lock(folder, lock)
+            _await_engines(folder, place)
             yield from _claimed(folder, place, force, files)
     except OSError as error:
         if error.errno and not error.filename:  # a full disk, while a file was written that was open
@@ -191,6 +196,21 @@ def _lock(folder: Path, lock: TextIO) -> None:
     except OSError as error:
         (folder / LOCK).unlink()
         raise OSError(error.errno, error.strerror, str(folder / LOCK)) from None
+
+
+def _await_engines(folder: Path, place: Path) -> None:
+    """Wait until the engine of a run here that was killed has ended, too. Raises CaseError for one that goes on."""
+    end = time.monotonic() + PATIENCE
+    while left := [pid for pid, own in engines_in(place) if not _is_apart(own, place)]:
+        if time.monotonic() > end:
+            (folder / LOCK).unlink(missing_ok=True)
+            raise CaseError(f"{folder}: process {left[0]} of an earlier run still writes here; wait for its end")
+        time.sleep(POLL)
+
+
+def _is_apart(own: Path, place: Path) -> bool:
+    """Whether a folder below `place` belongs to another run, as the points of a sweep do."""
+    return any((p / MARKER).exists() for p in (own, *own.parents) if p != place and p.is_relative_to(place))
 
 
 def _folders(folder: Path) -> Iterator[Path]:

@@ -54,11 +54,12 @@ def launcher() -> Path | None:
 
 
 @cache
-def product_hash() -> str:
-    """Hash of the installed product: compiled parts, templates, Python sources and the materials file."""
+def product_hash(*, sources: bool = True) -> str:
+    """Hash of the installed product: version, compiled parts, templates, tables and, if wanted, Python sources."""
     package = Path(__file__).parents[1]
     compiled = [native("libepdem.so"), native("libepdem_liggghts.so"), launcher()]
-    ours = [*beside("templates").rglob("*.j2"), *package.rglob("*.py"), *package.rglob("*.toml")]
+    ours = [*beside("templates").rglob("*.j2"), *package.rglob("*.toml")]
+    ours += package.rglob("*.py") if sources else []
     sha = hashlib.sha256(__version__.encode())
     for path in [*(path for path in compiled if path and path.is_file()), *sorted(ours)]:
         sha.update(path.name.encode() + path.read_bytes())

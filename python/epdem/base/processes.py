@@ -89,6 +89,7 @@ def _raise_stopped(what: Any) -> None:
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$", re.M)
 POLL = 0.1  # [s] between two reads of a growing log
 PATIENCE = 5.0  # [s] for each of SIGTERM and SIGKILL
+FOLDER = "EPDEM_FOLDER"  # environment variable of an engine and all that it starts: the folder of its run
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
 
@@ -121,6 +122,9 @@ def call(
     """
     path, start, rest = folder / log, time.monotonic(), b""
     end = math.inf if seconds is None else start + seconds
+    env = (os.environ if env is None else env) | {FOLDER: str(folder.resolve())}
+    if not append:
+        path.unlink(missing_ok=True)  # what still has the log of an earlier run open writes no row of this one
     with path.open("ab" if append else "wb") as stream, path.open("rb") as reader:
         begin, process = reader.seek(0, os.SEEK_END), None
 
@@ -218,6 +222,21 @@ def session(leader: int) -> list[psutil.Process]:
             if os.getsid(member.pid) == leader and member.status() != psutil.STATUS_ZOMBIE:
                 members.append(member)
     return members
+
+
+def engines_in(folder: Path) -> list[tuple[int, Path]]:
+    """(number, folder of its run) of each living process of an engine that runs in `folder` or below it.
+
+    mpirun and its ranks outlive a killed run by seconds.
+    """
+    found = []
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error, OSError):
+            place = process.environ().get(FOLDER)
+            living = process.pid != os.getpid() and process.status() != psutil.STATUS_ZOMBIE
+            if place and living and Path(place).is_relative_to(folder):
+                found.append((process.pid, Path(place)))
+    return found
 
 
 def most_ranks() -> int:

@@ -186,9 +186,12 @@ class FileFill(Frozen):
         units, rows = csv_table(self.file)
         known = ["x", "y", "z", "radius", "material", "vx", "vy", "vz"]
         for head, unit in units.items():
-            if head not in known or unit:
-                names = ", ".join(known)
-                raise ValueError(f"{self.file}: unknown column {head[:40]!r}; there are {names}, in SI without units")
+            if head not in known:
+                raise ValueError(f"{self.file}: unknown column {head[:40]!r}; there are {', '.join(known)}")
+            if unit:
+                raise ValueError(
+                    f"{self.file}: column '{head} [{unit[:20]}]': heads have no units; write {head!r} and SI numbers"
+                )
         for head in known[:4]:
             if head not in units:
                 raise ValueError(f"{self.file}: column {head!r} is missing")

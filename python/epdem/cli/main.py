@@ -114,7 +114,7 @@ def _run_impacts(
 
     with status() as progress:
         outcome = run(case, engines=[find(name) for name in engines], progress=progress, **options)
-        progress("page")
+        progress("figures")
         write_impacts_page(outcome, formats)
     return answer(report.document(outcome), report.shown(outcome, full=full), as_json, outcome.passed)
 

@@ -108,6 +108,7 @@ def _read(path: Path, place: str) -> FloatArray:
     raw = path.read_bytes()
     count = int.from_bytes(raw[80:84], "little")
     if len(raw) != 84 + 50 * count:  # not a binary file, so it must be a text
+        raw = raw.lower()  # as some programs write it in capitals
         if b"facet" not in raw:
             raise CaseError(
                 f"{place} = '{path}': not an STL file ({len(raw)} bytes; the {count} triangles of its header have "

@@ -91,7 +91,7 @@ def _renewed(text: str, place: Path) -> tuple[str, list[str]]:
         texts = [word.group() for word in words]
         at = 1 if texts[:1] == ["pair_style"] else 3 if texts[:1] == ["fix"] else len(texts)
         if found := _OLD_MODEL.fullmatch(texts[at] if at < len(texts) else ""):
-            new = [f"{found[1]}gran", "model", found[2], *(["tangential", "history"] if found[3] else [])]
+            new = [f"{found[1] or ''}gran", "model", found[2], *(["tangential", "history"] if found[3] else [])]
             new += _old_flags(texts[at + 1 :], where) if found[1] else _flags(texts[at + 1 :])
             start, end = words[at].start(), words[-1].end()
             notes.append(f"{where}: '{' '.join(texts[at:])}' is '{' '.join(new)}' today")

@@ -4,7 +4,7 @@
 The name of a folder is the hash of what the point sets and of the engines, so that a sweep that has grown finds again
 what is finished. `point.json` is written whole or not at all: state and results never disagree. While a point runs it
 has `running.json` instead. `results.h5`, of engines with decks, holds the tables, which are judged anew when the case
-or epdem has changed and the inputs of the engine have not.
+or the version of epdem has changed and the inputs of the engine have not.
 """
 
 import copy
@@ -100,12 +100,12 @@ class Sweep:
         return {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in names if Path(name).is_file()}
 
     def inputs(self, number: int) -> str:
-        """Hash of the case of a point with its files, of the engines and of epdem: a point with another one is looked
-        at again, and its engines run if their own inputs have changed."""
+        """Hash of the case of a point with its files, of the engines and of what they read of epdem: a point with
+        another one is looked at again, and its engines run if their own inputs have changed."""
         names = file_names(self.data(number)) if file_names(self.points[number - 1]) else file_names(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
         known = (self.data(number), self.identities[number - 1], sorted(self.versions.items()), contents)
-        return hashlib.sha256(f"{paths.product_hash()}{known!r}".encode()).hexdigest()
+        return hashlib.sha256(f"{paths.product_hash(sources=False)}{known!r}".encode()).hexdigest()
 
 
 def write(sweep: Sweep, folder: Path) -> None:

@@ -22,7 +22,7 @@ from ...case import impact, scene
 from ...case.scene import is_scene
 from ...case.toml import LoadedCase, error_context, portable_text, with_whole_paths
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
-from ...errors import CaseError, EngineError, EpdemError
+from ...errors import CaseError, EpdemError
 from ...impacts import store as store_impacts
 from ...impacts.experiment import experiment
 from ...impacts.run import fill, prepare, stored_results
@@ -111,7 +111,7 @@ def _scene(sweep: Sweep, place: Path) -> dict[str, list[Any]]:
 
     interrupted = any(place.glob("restart.*.bin")) and not (place / "results.h5").exists()
     if interrupted and Feature.RESTART in tool.features:
-        with contextlib.suppress(CaseError, EngineError):  # no whole restart file, or one of another deck
+        with contextlib.suppress(CaseError):  # refused before the engine starts: no whole restart file, another deck
             return once(True)
     return once(False)
 
