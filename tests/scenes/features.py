@@ -57,8 +57,8 @@ WALLS = {
         {"name": "front", "kind": "plane", "axis": "y", "at": "-9 mm", "material": "glass"},
     ],
     "plates across x and y": [
-        plate("left", "rubber", 10) | {"axis": "x", "center": ["-9 mm", "0 mm", "10 mm"]},
-        plate("front", "glass", 10) | {"axis": "y", "center": ["0 mm", "-9 mm", "10 mm"]},
+        plate("left", "rubber", 10) | {"axis": "x", "center": ["-9.5 mm", "0 mm", "10 mm"]},
+        plate("front", "glass", 10) | {"axis": "y", "center": ["0 mm", "-9.5 mm", "10 mm"]},
     ],
     "duct": [DUCT | {"stress": True}],
     "cap": [CONE | {"stress": True}],
@@ -234,6 +234,8 @@ MEASURES = {
 ROOMS = {
     "closed": {},
     "periodic": {"periodic": True},
+    "periodic along x": {"periodic": "x"},
+    "periodic along y": {"periodic": "y"},
     "open boundary": {"open_boundary": True, "gravity": "1.62 m/s^2"},
 }
 SLOTS = {

@@ -46,7 +46,7 @@ def porosity(p, frame):
     free = np.ones(len(points), bool)
     for sphere in frame.itertuples():
         away = points - (sphere.x, sphere.y, sphere.z)
-        if p.scene.periodic:
-            away[:, :2] -= length[:2] * np.round(away[:, :2] / length[:2])
+        for k, repeats in enumerate([p.scene.periodic in (True, "x"), p.scene.periodic in (True, "y")]):
+            away[:, k] -= repeats * length[k] * np.round(away[:, k] / length[k])
         free &= (away**2).sum(axis=1) > sphere.radius**2
     return free.mean()

@@ -161,10 +161,6 @@ def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
             {"wall": [FLOOR, PLATE], "phase": turned("z")},
             "phase.turn.move = 'rotate': a region of LAMMPS takes the axis",
         ),
-        (
-            {"wall": [FLOOR, plane("side", "x", "-9 mm")], "periodic": True},
-            "scene.wall.side.axis = 'x': the room is periodic there",
-        ),
     ],
 )
 def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence):

@@ -8,14 +8,22 @@ import numpy as np
 import pandas as pd
 import pytest
 from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
 
+from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
+from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.scenes import measures, placement
 from epdem.scenes.plan import plan
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
 SIZE = 20e-3  # of the room along x and y [m]
+HOSTS = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("lammps", marks=needs_lammps),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
+]
 
 
 def ball(name: str, *place: float) -> dict:
@@ -61,3 +69,112 @@ def test_a_fill_leaves_the_place_of_a_body_beyond_a_face():
         way[..., :2] -= SIZE * np.round(way[..., :2] / SIZE)
         gap = np.linalg.norm(way, axis=-1) - x[:, None, 3] - x[None, :, 3]
         assert gap[np.triu_indices(len(x), 1)].min() > 0
+
+
+def plate(name: str, axis: str, at: str) -> dict:
+    center = ["0 mm", "0 mm", "12 mm"]
+    center["xyz".index(axis)] = at
+    return {
+        "name": name,
+        "kind": "plate",
+        "axis": axis,
+        "center": center,
+        "size": ["8 mm", "8 mm"],
+        "material": "steel",
+    }
+
+
+BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "5 mm"], "y": ["-5 mm", "5 mm"], "z": ["1 mm", "9 mm"]}
+BOX |= {"material": "steel"}
+PLANE = {"name": "side", "kind": "plane", "axis": "x", "at": "0 mm", "material": "steel"}
+
+
+@pytest.mark.parametrize(
+    ("wall", "repeats", "other"),
+    [
+        (PLANE, "x", "y"),
+        (PLANE, True, "y"),
+        (PLANE | {"phases": ["fall"]}, "x", "y"),
+        (PLANE | {"axis": "y"}, "y", "x"),
+        (PLANE, "y", None),
+        (plate("side", "x", "9 mm"), True, "y"),
+        (plate("side", "x", "-10 mm"), "x", "y"),
+        (plate("side", "x", "8 mm"), True, None),  # farther from the face than a radius
+        (plate("side", "y", "9 mm"), "x", None),
+        (BOX | {"name": "side"}, "x", "y"),
+        (BOX | {"name": "side"}, "y", None),
+        (BOX | {"name": "side", "open": ["-x"]}, "x", None),
+    ],
+)
+def test_walls_that_spheres_would_touch_through_a_face_are_refused(wall, repeats, other):
+    data = periodic(wall=[FLOOR, wall], periodic=repeats, fill=[], body=[ball("a", 7, 7, 30)])
+    if other is None:
+        plan(parse(data))
+        return
+    words = f"scene.wall.side: a wall across .*, along which the room repeats.*scene.periodic = '{other}'"
+    with pytest.raises(CaseError, match=words):
+        plan(parse(data))
+
+
+def beds(axis: str) -> dict:
+    """Spheres in a room that repeats along x or y, between walls across the other one; a mirror turns one into the
+    other."""
+    order, random = (0, 1, 2) if axis == "x" else (1, 0, 2), np.random.default_rng(1)
+    bodies = []
+    for n, (along, across, z) in enumerate(itertools.product((-10, -6.6, -3.2, 0.5, 4, 7), (-7, -3, 1, 5), (2, 5.5))):
+        place, v = np.array([along, across, z])[[*order]], random.normal(0, 0.5, 3)[[*order]]
+        bodies.append(ball(f"b{n}", *place) | {"velocity": [f"{x} m/s" for x in v]})
+    walls = [
+        PLANE | {"name": f"w{n}", "axis": "xy".replace(axis, ""), "at": at} for n, at in enumerate(("-9 mm", "9 mm"))
+    ]
+    data = periodic(
+        periodic=axis, wall=[FLOOR, *walls], fill=[], body=bodies, phase=[{"name": "fall", "duration": "6 ms"}]
+    )
+    return data | {"contact": {"friction": 0.3}, "output": {"rows": 20, "particles": 5, "contacts": 5}}
+
+
+@pytest.mark.parametrize("engine", HOSTS)
+def test_a_room_repeats_along_one_axis_where_walls_close_the_other(engine, tmp_path):
+    found = {axis: run(write_case(beds(axis), tmp_path), engine, out=tmp_path / axis).results for axis in "xy"}
+    one, other = (results.particles.set_index(["step", "id"]).sort_index() for results in found.values())
+    names = ["x", "y", "z", "vx", "vy", "vz"]
+    mirrored = other[["y", "x", "z", "vy", "vx", "vz"]]
+    assert one[names].to_numpy() == pytest.approx(mirrored.to_numpy(), rel=1e-6, abs=1e-6 if engine == "yade" else 1e-9)
+    contacts = found["x"].contacts
+    assert {*contacts["wall"]} == {"", "floor", "w0", "w1"}
+    x = one["x"].reindex(pd.MultiIndex.from_frame(contacts[["step", "i"]])).to_numpy()
+    y = one["x"].reindex(pd.MultiIndex.from_frame(contacts[["step", "j"]])).to_numpy()
+    assert np.abs(x - y)[contacts["wall"] == ""].max() > 0.5 * SIZE, "some contact goes through a face"
+
+
+def narrow(copies: int) -> dict:
+    """Two spheres that touch each other on both sides in a room that repeats after 2 diameters, `copies` times."""
+    bodies = []
+    for n in range(copies):
+        spin = {"spin": ["0 rad/s", "0 rad/s", "300 rad/s"]}
+        bodies += [ball(f"a{n}", 0.8 + 5.9 * n, 0, 5) | spin, ball(f"b{n}", 3.75 + 5.9 * n, 0.3, 5)]
+    room = {"x": ["0 mm", f"{5.9 * copies} mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "10 mm"]}
+    data = periodic(
+        periodic="x", room=room, wall=[], fill=[], body=bodies, phase=[{"name": "fall", "duration": "1 ms"}]
+    )
+    data["scene"]["gravity"] = "0 m/s^2"
+    data["numerics"] |= {"time_step": "2e-6 s", "highest_speed": "1 m/s"}
+    return data | {"contact": {"friction": 0.3}, "output": {"rows": 10, "particles": 5}}
+
+
+@needs_lammps
+def test_a_narrow_periodic_room_is_refused_where_a_host_mixes_images_and_runs_in_lammps(tmp_path):
+    for engine, least in (("liggghts", 0.0075), ("yade", 0.00752)):  # 2.5 diameters; skins have two digits
+        with pytest.raises(
+            CaseError, match=rf"scene.room.x: .* after 0.0059 m, at least {least:g} m .*--engine lammps"
+        ):
+            scene_engine(engine).scene_deck.deck(plan(parse(narrow(1))))
+        scene_engine(engine).scene_deck.deck(plan(parse(narrow(2))))
+    frames = []
+    for copies in (1, 2):
+        outcome = run(write_case(narrow(copies), tmp_path), "lammps", out=tmp_path / str(copies))
+        frames.append(outcome.results.particles.query("id < 3").set_index(["step", "id"]).sort_index())
+    names = ["y", "vx", "vy", "omega_z"]
+    assert frames[0][names].to_numpy() == pytest.approx(frames[1][names].to_numpy(), rel=1e-9, abs=1e-12)
+    turned = frames[0]["omega_z"].to_numpy().reshape(-1, 2)
+    assert abs(turned[-1] - turned[0]).min() > 10, "friction acts"

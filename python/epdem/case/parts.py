@@ -245,14 +245,14 @@ class SingleSphere(Frozen):
 class Parts(Frozen):
     """A scene of any parts, in a room beyond whose limits spheres are lost.
 
-    periodic: in x and y. open_boundary: spheres may leave the room. Gravity acts along -z.
+    periodic: in x and y, or in one of them. open_boundary: spheres may leave the room. Gravity acts along -z.
     highest_fall, highest_drive: of a kind, in place of those that follow from the parts. places: keys of a kind by the
     places of the parts that follow from them, for messages.
     """
 
     kind: Literal["parts"]
     room: Room
-    periodic: bool = False
+    periodic: bool | Literal["x", "y"] = False
     open_boundary: bool = False
     gravity: Gravity = 9.81
     wall: list[Wall] = Field(default_factory=list, max_length=64)
@@ -318,16 +318,15 @@ class Parts(Frozen):
     @property
     def periods(self) -> tuple[float, float, float]:
         """Lengths after which the room repeats along x, y and z [m]; 0: it does not."""
-        sides = zip("xyz", (self.room.x, self.room.y), strict=False)
-        x, y = (high - low if self.periodic else 0.0 for _, (low, high) in sides)
+        sides = {"x": self.room.x, "y": self.room.y}
+        x, y = (high - low if self.periodic in (True, axis) else 0.0 for axis, (low, high) in sides.items())
         return x, y, 0.0
 
     @property
     def images(self) -> list[tuple[float, float, float]]:
         """Shifts [m] from a sphere to itself and, in a periodic room, to its nearest images."""
-        ways = (-1, 0, 1) if self.periodic else (0,)
-        (xlo, xhi), (ylo, yhi) = self.room.x, self.room.y
-        return [(a * (xhi - xlo), b * (yhi - ylo), 0.0) for a in ways for b in ways]
+        along_x, along_y = ((-period, 0.0, period) if period else (0.0,) for period in self.periods[:2])
+        return [(x, y, 0.0) for x in along_x for y in along_y]
 
     @property
     def planes(self) -> list[PlaneWall]:

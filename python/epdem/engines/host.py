@@ -138,3 +138,13 @@ def refuse(place: str, value: object, reason: str) -> None:
     if value:
         shown = "" if value is True else f" = {value!r}"
         raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
+
+
+def refuse_narrow(p: ScenePlan, least: float, reason: str) -> None:
+    """Raise CaseError for a room that repeats after less than `least` [m]."""
+    for axis, period in zip("xyz", p.scene.periods, strict=True):
+        if 0.0 < period < least * (1.0 - 1e-9):
+            raise CaseError(
+                f"scene.room.{axis}: the room repeats after {period:g} m, at least {least:.4g} m are needed: {reason}; "
+                "enlarge it, give a smaller numerics.skin, or use --engine lammps"
+            )

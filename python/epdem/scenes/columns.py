@@ -176,9 +176,9 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         raise EngineError(f"{folder}: the contacts of step {step} are damaged: no such spheres; run the case again")
     between = (raw["j"] != 0).to_numpy()[:, None]
     apart = np.where(between, first[[*"xyz"]].to_numpy() - second[[*"xyz"]].to_numpy(), 0.0)
-    if p.scene.periodic:
-        sides = np.subtract(p.box[1:4:2], p.box[0:4:2])
-        apart[:, :2] -= sides * np.round(apart[:, :2] / sides)
+    for k, period in enumerate(p.scene.periods):
+        if period:
+            apart[:, k] -= period * np.round(apart[:, k] / period)
     at_walls = raw[NORMAL].to_numpy(float) if NORMAL[0] in raw else np.zeros((len(raw), 3))
     raw = raw.assign(**dict(zip(NORMAL, np.where(between, _unit(apart), at_walls).T, strict=True)))
     added = raw["added_overlap"] if p.model.compaction else 0.0

@@ -65,6 +65,30 @@ def refuse_outside(s: Parts, triangles: dict[str, FloatArray]) -> None:
             raise CaseError(f"scene.wall.{name}: reaches beyond scene.room; enlarge the room, or make the wall smaller")
 
 
+def refuse_walls_at_faces(s: Parts, triangles: dict[str, FloatArray]) -> None:
+    """Raise CaseError for flat walls that spheres would touch through a face of a periodic room: planes across an axis
+    along which the room repeats, and triangles parallel to a face and nearer to it than the largest radius.
+
+    No host lets walls act through a face.
+    """
+    largest = max(p.radii()[1] for p in s.filled)
+    for k, axis in enumerate("xyz"):
+        if not s.periods[k]:
+            continue
+        walls = [w.name for w in (*s.planes, *s.gates) if w.axis == axis]
+        for name, corners in triangles.items():
+            along = corners[..., k]
+            near = np.abs(along[:, :1] - s.room.limits[2 * k : 2 * k + 2]).min(axis=1) < largest
+            if (near & (np.ptp(along, axis=1) < 1e-9 * s.periods[k])).any():
+                walls.append(name)
+        for name in walls:
+            raise CaseError(
+                f"scene.wall.{name}: a wall across {axis}, along which the room repeats, so that spheres would touch "
+                f"it through a face; remove the wall, or let the room repeat along {'xy'.replace(axis, '')} alone, "
+                f"scene.periodic = {'xy'.replace(axis, '')!r}"
+            )
+
+
 def refuse_combinations(case: SceneCase, s: Parts) -> None:
     """Raise CaseError for parts that exclude each other."""
     if case.measured and not s.stages:
@@ -106,7 +130,7 @@ def overlaps(spheres: Sequence[Sphere], s: Parts) -> tuple[IntArray, IntArray, F
     if len(spheres) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros(0)
     low = np.array([s.room.x[0], s.room.y[0], 0.0])
-    period = np.array([np.ptp(s.room.x), np.ptp(s.room.y), 0.0]) * s.periodic
+    period = np.array(s.periods)
     positions = np.array([x.place for x in spheres])
     positions[:, period > 0] = ((positions - low) % np.where(period > 0, period, 1.0))[:, period > 0]
     radius = np.array([x.radius for x in spheres])
@@ -152,16 +176,16 @@ def refuse_positions(s: Parts) -> None:
     """Raise CaseError for a sphere outside of the room or on its limit, for one whose centre lies in another one, and
     for spheres of a later phase that overlap.
 
-    Engines lose the former and divide by zero for the latter. A periodic room has no limits in x and y.
+    Engines lose the former and divide by zero for the latter. A periodic room has no limits where it repeats.
     """
     limits = s.room.limits
-    sides = [*zip("xyz", limits[0::2], limits[1::2], strict=True)]
+    sides = [*zip(limits[0::2], limits[1::2], strict=True)]
     first, *later = _by_phase(s)
     for group in (first, *later):
         for name, x in group:
             inside = all(
-                low < v < high or (s.periodic and axis != "z" and low <= v <= high)
-                for v, (axis, low, high) in zip(x.place, sides, strict=True)
+                low < v < high or (period and low <= v <= high)
+                for v, (low, high), period in zip(x.place, sides, s.periods, strict=True)
             )
             if not inside:
                 raise CaseError(

@@ -29,6 +29,7 @@ from .limits import (
     refuse_outside,
     refuse_positions,
     refuse_steps,
+    refuse_walls_at_faces,
 )
 from .meshes import FloatArray
 from .model import Model, model
@@ -372,6 +373,7 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_outside(scene, triangles)
     meshes.refuse_leaving(scene, triangles)
     refuse_bodies_in_walls(scene, triangles)
+    refuse_walls_at_faces(scene, triangles)
     refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)

@@ -51,8 +51,6 @@ def check(p: ScenePlan) -> None:
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
     refuse("output.pictures", out.pictures, "there are none")
-    for wall in (w for w in (*p.scene.planes, *p.scene.gates) if p.scene.periodic and w.axis != "z"):
-        refuse(f"scene.wall.{wall.name}.axis", wall.axis, "the room is periodic there")
     for fill in p.insertions:
         refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")
     if not len(placement.spheres(p)):

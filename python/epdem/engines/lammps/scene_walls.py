@@ -113,7 +113,7 @@ def _plate(p: ScenePlan, w: PlateWall) -> Iterator[str]:
     sizes = iter(w.size)
     for axis, center in zip("xyz", w.center, strict=True):
         half = 0.0 if axis == w.axis else next(sizes) / 2
-        endless = p.scene.periodic and axis in "xy" and axis != w.axis and spans(w, axis, p.box)
+        endless = p.scene.periods["xyz".index(axis)] and axis != w.axis and spans(w, axis, p.box)
         yield "INF INF" if endless else _numbers((center - half, center + half))
 
 

@@ -15,6 +15,7 @@ from ...impacts.plan import Plan
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
+from ..host import refuse_narrow
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
@@ -191,6 +192,8 @@ class SceneDeck:
 def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
+    skin = p.case.numerics.skin or default_skin(p)
+    refuse_narrow(p, 2.0 * (2.0 * p.largest + skin), "LIGGGHTS has one history for a pair of spheres, also for images")
     _refuse_meshes(p)
     _refuse_skin(p)
     _refuse_restarts(p)
@@ -199,7 +202,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     return SceneDeck(
         plan=p,
         contact=contact_words(m, wear(p), recorded),
-        skin=p.case.numerics.skin or default_skin(p),
+        skin=skin,
         primitives=primitives(p),
         meshes=surface_meshes(p),
         loads_of=loads(p),

@@ -12,7 +12,7 @@ from ...case.walls import Move
 from ...impacts.plan import Group, Plan, side_by_side
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
-from ..host import refuse
+from ..host import refuse, refuse_narrow
 from .classes import ContactClasses, functors, materials
 from .scene_parts import (
     HEAD,
@@ -32,6 +32,7 @@ from .scene_parts import files as files_of_parts
 
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
+ENLARGED = 1.25  # bounds of spheres that grow
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 
 
@@ -108,9 +109,9 @@ class DeckPhase:
 class SceneDeck:
     """Values of the template of a scene.
 
-    cell: sides of the periodic cell [m]. walls: that are there at the start, `late`: that come later. placed: whether
-    spheres are there at the start. low, high: of the room [m], of a periodic one along z. sampling: steps between two
-    calls of the recorder. loads: walls with the place of their torque.
+    cell: sides of the periodic cell [m], twice the room where this does not repeat. walls: that are there at the start,
+    `late`: that come later. placed: whether spheres are there at the start. sampling: steps between two calls of the
+    recorder. loads: walls with the place of their torque.
     """
 
     plan: ScenePlan
@@ -119,8 +120,6 @@ class SceneDeck:
     walls: tuple[Wall, ...]
     late: tuple[Wall, ...]
     placed: bool
-    low: tuple[float, ...]
-    high: tuple[float, ...]
     skin: float
     phases: tuple[DeckPhase, ...]
     motions: tuple[Move, ...]
@@ -150,22 +149,23 @@ def _placed(p: ScenePlan) -> bool:
 def deck(p: ScenePlan) -> SceneDeck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     check(p)
+    skin = p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}")
+    reach = p.largest * (ENLARGED if p.model.compaction else 1.0) + skin
+    refuse_narrow(p, 4.0 * reach, "YADE finds no contacts of spheres whose bounds are half of a period")
     m, phases, every_wall = p.model, tuple(_phases(p)), walls(p)
     shapes = ("Sphere", *sorted({"Facet" if w.file else "Wall" for w in every_wall.values()}))
-    xlo, xhi, ylo, yhi, zlo, zhi = p.box
-    sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
+    sides = zip(p.scene.periods, p.box[0::2], p.box[1::2], strict=True)
+    x, y, z = (period or 2.0 * (high - low) for period, low, high in sides)
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
     every_step = p.row_columns or any(mesh.wear for mesh in p.scene.meshes.values())
     return SceneDeck(
         plan=p,
         contact=ContactClasses(m.law, functors(m, shapes, recordStrain=True), materials(m)),
-        cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
+        cell=(x, y, z),
         walls=tuple(wall for name, wall in every_wall.items() if name in there),
         late=tuple(wall for name, wall in every_wall.items() if name not in there),
         placed=_placed(p),
-        low=(*(low for low, _ in sides), zlo),
-        high=(*(high for _, high in sides), zhi),
-        skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
+        skin=skin,
         phases=phases,
         motions=tuple(motion for phase in phases for motion in phase.motions),
         sampling=1 if every_step else p.sampling if p.measured_walls else p.every,

@@ -21,7 +21,7 @@ EDGES = (
 )
 
 
-LEGS = (6.0, 6.0, 1.9)  # of a triangle across the room, in its sizes
+LEG, LEG_OF_PERIOD = (0.2, 1.9), (0.5, 6.0)  # begin before the room and length of a triangle across it, in its sizes
 HEAD = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"  # of a table of spheres
 
 
@@ -187,14 +187,14 @@ def table_text(head: str, rows: Sequence[Sequence[float]]) -> str:
 
 
 def _large_triangle(p: ScenePlan, name: str) -> list[float]:
-    """Corners of a triangle whose edges no sphere meets: along x and y larger than the periodic cell, along z larger
-    than the room."""
+    """Corners of a triangle whose edges no sphere meets: larger than the room, where this repeats than the cell."""
     planes = _planes(p)
     axis, at = (planes[name].axis, planes[name].at) if name in planes else ("z", float(p.triangles[name][0, 0, 2]))
-    corners = [[p.box[2 * k] - share * _size(p, k) for k, share in enumerate((0.5, 0.5, 0.2))] for _ in range(3)]
+    legs = [LEG_OF_PERIOD if period else LEG for period in p.scene.periods]
+    corners = [[p.box[2 * k] - begin * _size(p, k) for k, (begin, _) in enumerate(legs)] for _ in range(3)]
     first, second = (k for k in range(3) if "xyz"[k] != axis)
-    corners[1][first] += LEGS[first] * _size(p, first)
-    corners[2][second] += LEGS[second] * _size(p, second)
+    corners[1][first] += legs[first][1] * _size(p, first)
+    corners[2][second] += legs[second][1] * _size(p, second)
     for corner in corners:
         corner["xyz".index(axis)] = at
     return [x for corner in corners for x in corner]

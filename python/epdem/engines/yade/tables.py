@@ -68,9 +68,9 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
 def particles(frames: Frames) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
     p, table = frames.plan, frames.table("particles")
-    if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
-        for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
-            table[axis] = (table[axis] - low) % (high - low) + low
+    for axis, low, period in zip("xyz", p.box[0::2], p.scene.periods, strict=True):
+        if period:  # YADE does not put back what leaves its periodic cell
+            table[axis] = (table[axis] - low) % period + low
     return columns.whole(p, table, frames.folder)
 
 

@@ -60,7 +60,7 @@ class Recorder:
     """Rows, frames and contact tables; all of one row are of one step. SI.
 
     law       functor of the law, with recordStrain
-    low, high the room that a sphere must not leave [m], along the last axes if there are fewer than three
+    low, high the room that a sphere must not leave [m]
     fall      acceleration along z [m/s^2]
     every     steps between two rows
     frames    steps between two frames particles.STEP.npy: id, type, radius, mass, place, velocity, spin if `spins`;

@@ -66,8 +66,8 @@ class Spheres:
         return np.array([tuple(s.pos) for s in self.states]).reshape(-1, 3)
 
     def remove_outside(self, low: Sequence[float], high: Sequence[float]) -> None:
-        """Erase the spheres that have left the room, which is given along the last axes."""
-        x = self.positions()[:, 3 - len(low) :]
+        """Erase the spheres that have left the room."""
+        x = self.positions()
         inside = ((x >= low) & (x < high)).all(axis=1)
         if inside.all():
             return
