@@ -19,8 +19,7 @@ from epdem.theory.sources import CHAPTER, SOURCES
 ROOT = Path(__file__).resolve().parents[1]
 STATEMENT = re.compile(r"^Eq\. (8\.\d\d) \[(.+?)\]: (.+?)(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
 HEADERS, TESTS = "cpp_contact/include/epdem", "tests"
-PRINTED, CRITERIA = ROOT / "python/epdem/verification/printed.py", ROOT / TESTS / "physics/criteria.py"
-THEORY = [*(ROOT / "python/epdem/theory").glob("*.py"), PRINTED, CRITERIA]
+THEORY = [*(ROOT / "python/epdem/theory").glob("*.py")]
 # header, function and code of what computes with an equation; a law that merely leads to one (8.83, 8.84) does not
 CPP = {
     "8.78": [("cavity.hpp", "Cavity::parameters", '"c_Y", "1", 1.60')],
@@ -74,7 +73,7 @@ def _tests_of(name: str, tests: dict[str, str]) -> tuple[str, ...]:
     if "." in module:
         stated = re.compile(rf"# equation: {re.escape(name)}$", re.MULTILINE)
         return tuple(place for place, text in tests.items() if stated.search(text))
-    imported = re.compile(rf"from epdem\.(?:verification|theory)\.{module} import .*\b{word}\b")
+    imported = re.compile(rf"from epdem\.theory\.{module} import .*\b{word}\b")
     called = re.compile(rf"\b{re.escape(name)}\b")
     bare = re.compile(rf"(?<![\w.\"]){word}\(")
     return tuple(
@@ -116,10 +115,8 @@ def page() -> str:
         "",
         f"The numbers of the equations are those of {CHAPTER}.",
         "",
-        "The functions are in `epdem.theory`, those of figures alone in `epdem.verification.printed`, those of tests",
-        f"alone in `{CRITERIA.relative_to(ROOT)}`, the headers in `{HEADERS}`, the tests in",
-        f"`{TESTS}/physics`. This command writes the page:",
-        "`.venv/bin/python docs/equations.py`.",
+        f"The functions are in `epdem.theory`, the headers in `{HEADERS}`, the tests in",
+        f"`{TESTS}/physics`. This command writes the page: `.venv/bin/python docs/equations.py`.",
         "",
         "| eq. | formula | source | function | C++ | tests |",
         "|---|---|---|---|---|---|",

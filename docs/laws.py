@@ -24,10 +24,10 @@ from epdem.impacts.prediction import predict
 from epdem.impacts.run import run_plan
 from epdem.laws.strengths import default_numbers
 from epdem.report.chart import GREY, INK, Axis, Chart, Panel, Series, save
+from epdem.theory import printed
 from epdem.theory.backbones import LAWS as BACKBONES
-from epdem.theory.restitution import wu
+from epdem.theory.printed import wu_restitution
 from epdem.theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
-from epdem.verification import printed
 
 ROOT = Path(__file__).parents[1]
 YIELD_STRESS = 50e6  # [Pa]
@@ -61,7 +61,7 @@ def figure() -> Chart:
     ratios = (FIRST_YIELD_ROUNDED, BACKBONES["thornton"].declaration().default_ratio)
     v_y0, v_y = (yield_speed(p_y=ratio * Y, **numbers) for ratio in ratios)
     fine = np.geomspace(SPEEDS[0], SPEEDS[-1], 400)
-    fit = wu(fine * v_y0, v_y0=v_y0)
+    fit = wu_restitution(fine * v_y0, v_y0=v_y0)
     above: list[Series] = []
     below: list[Series] = []
     for k, name in enumerate(LAWS):
@@ -70,10 +70,12 @@ def figure() -> Chart:
         print(f"{name:<10} largest error of e_n in LIGGGHTS, 400 steps in contact, 8 phases: {error:.1e}")
         above += [Series(f"{name}, theory", fine, line, k), Series(f"ep/{name}, LIGGGHTS", SPEEDS, points, k, None, k)]
         if name != "hertz":
-            there = points / wu(SPEEDS * v_y0, v_y0=v_y0) - 1
+            there = points / wu_restitution(SPEEDS * v_y0, v_y0=v_y0) - 1
             below += [Series("", fine, line / fit - 1, k), Series("", SPEEDS, there, k, None, k)]
-    johnson = printed.johnson(fine * v_y0, p_m=BACKBONES["johnson"].declaration().default_ratio * Y, **numbers)
-    above.append(Series("8.83 Thornton 1997", fine, printed.thornton(fine * v_y0, v_y=v_y), INK, "dot"))
+    johnson = printed.johnson_restitution(
+        fine * v_y0, p_m=BACKBONES["johnson"].declaration().default_ratio * Y, **numbers
+    )
+    above.append(Series("8.83 Thornton 1997", fine, printed.thornton_restitution(fine * v_y0, v_y=v_y), INK, "dot"))
     above.append(Series("8.86 Johnson 1985", fine, np.where(johnson <= 1.1, johnson, np.nan), INK, "dashdot"))
     above.append(Series("8.88 Wu et al. 2003, finite elements", fine, fit, INK, "dash"))
     below += [Series("", [SPEEDS[0], SPEEDS[-1]], [level, level], GREY, "dash") for level in (-0.05, 0.0, 0.05)]
@@ -105,7 +107,7 @@ def hardening() -> Chart:
         print(f"x = {exponent:<7g} largest error of e_n in LIGGGHTS: {error:.1e}")
         line = predict(replace(pair, law=law, speed=fine * v_y)).e_n
         series += [Series(f"x = {exponent:g}", fine, line, k), Series("", ratio, points, k, None, k)]
-    series.append(Series("8.83 Thornton 1997", fine, printed.thornton(fine, v_y=1.0), INK, "dot"))
+    series.append(Series("8.83 Thornton 1997", fine, printed.thornton_restitution(fine, v_y=1.0), INK, "dot"))
     series.append(Series("Hertz, x = 1", [fine[0], fine[-1]], [1.0, 1.0], INK, "dash"))
     ticks = {level: f"{level:g}" for level in (0.2, 0.3, 0.5, 0.7, 1.0)}
     return Chart(

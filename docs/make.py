@@ -23,6 +23,7 @@ FIGURES = {  # the command, and where the figure is then
     ),
     "figure_8_16.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_16.png"),
     "figure_8_17.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_17.png"),
+    "figure_8_18.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_18.png"),
     "figure_8_19.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_19.png"),
     "thornton_ning_1998.png": ("epdem verify figures -o runs/figures", "runs/figures/thornton_ning_1998.png"),
     "laws.png": (".venv/bin/python docs/laws.py", "docs/figures/laws.png"),

@@ -49,7 +49,7 @@ DOCUMENTS = {  # words, and what the document must hold
         [str(CASES.parent / "data/plastic_contacts/3_ten_times_yield.yaml"), "-e", "embedded"],
         lambda d: d["passed"] and [row["quantity"] for row in d["rows"]] == ["force", "torque"],
     ),
-    "verify figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
+    "verify figures": (["-o", "f"], lambda d: len(d["files"]) == 10),
     "verify cost": (
         ["steel.toml", "-e", "embedded", "--repetitions", "1"],
         lambda d: d["models"][0]["model"] == "embedded, thornton" and len(d["rows"]) == 11,

@@ -55,7 +55,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         DECK | {"law": "johnson"},
     ),
     "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
-    "predict impacts": (("predict", "steel.toml"), {"law": "cavity", "error": "1e-2"} | ONE_IMPACT),
+    "predict impacts": (("predict", "steel.toml"), {"law": "cavity", "error": "1e-2", "full": None} | ONE_IMPACT),
     "crosscheck impacts": (
         ("verify crosscheck", "steel.toml"),
         {"engine": "embedded", "law": "cavity", "out": "there", "fresh": None, "force": None},
@@ -65,7 +65,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         {"file": "other.toml", "engine": "yade", "law": "cavity", "out": "there", "force": None},
     ),
     "contacts": (("verify contacts",), {"engine": "yade", "out": "there", "force": None}),
-    "one impact": (("predict",), {"law": "cavity", "error": "1e-2"} | ONE_IMPACT),
+    "one impact": (("predict",), {"law": "cavity", "error": "1e-2", "full": None} | ONE_IMPACT),
     "figures": (("verify figures",), {"pictures": "svg", "out": "there", "force": None}),
     "cost of impacts": (
         ("verify cost", "steel.toml"),

@@ -46,13 +46,50 @@ def test_theory_in_json_is_the_same_in_si():
     assert found["cavity"]["force_max"] == pytest.approx(10265.34867, rel=1e-9)  # 10 printed digits
 
 
+def changed_case(folder, case, *changes):
+    text = (CASES / case).read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "case.toml").write_text(text)
+    return folder / "case.toml"
+
+
+def test_the_share_of_waves_is_estimated_and_warned_of_above_5_percent(tmp_path):
+    """Elastic steel at 70 m/s, nu = 0.25: a share of 1.11 (v/c_0)^0.6 (Hunter 1957); the chapter's impact: about 3 %."""
+    found = json.loads(run("predict", CASES / "benchmarks/mild_steel_hutchings_1979.toml", "--json"))
+    assert 0.03 < found["rows"][0]["wave_share"] < 0.04 and not any("waves" in w for w in found["warnings"])
+    changes = ('name = "cavity"', 'name = "hertz"'), ("poisson_ratio = 0.3", "poisson_ratio = 0.25")
+    case = changed_case(tmp_path, "benchmarks/mild_steel_hutchings_1979.toml", *changes)
+    found = json.loads(run("predict", case, "--json"))
+    share = found["rows"][0]["wave_share"]
+    assert share == pytest.approx(1.11 * (70 / (208e9 / 7850) ** 0.5) ** 0.6, rel=3e-3)
+    (said,) = (w for w in found["warnings"] if "waves" in w)
+    assert said.startswith(f"elastic waves take an estimated {100 * share:.2g} % of the kinetic energy, above 5 %")
+    assert "wave_share" in run("predict", case, "--full") and "wave_share" not in run("predict", case)
+    two = json.loads(run("predict", CASES / "two_materials.toml", "--json"))
+    assert {row["wave_share"] for row in two["rows"]} == {None}  # waves return from the surface of a sphere
+
+
+def test_a_friction_above_0_3_names_the_pressure_at_which_the_surface_yields(tmp_path):
+    """1.24257 Y for mu = 0.4, nu = 0.3 by point-load integration; the speed goes as the pressure to 5/2."""
+    case = changed_case(tmp_path, "oblique_steel.toml", ("friction = 0.3", "friction = 0.4"))
+    found = json.loads(run("predict", case, "--json"))
+    (said,) = (w for w in found["warnings"] if "at its surface" in w)
+    Y = 1e9
+    assert f"from a peak pressure of {1.24257 * Y:.3g} Pa (1.24 Y) on" in said
+    speed = found["yield_speeds"]["steel"] * (1.24257 / 1.6) ** 2.5
+    assert said.endswith(f"reach at {speed:.3g} m/s")
+    assert not json.loads(run("predict", CASES / "oblique_steel.toml", "--json"))["warnings"]
+
+
 def test_theory_refuses_a_material_that_is_not_there():
     done = CliRunner().invoke(app, ["predict", "--material", "unobtainium"])
     assert done.exit_code != 0 and "brass" in str(done.exception)
 
 
 def test_figures_of_the_chapter_are_drawn_into_the_folder(tmp_path):
-    names = [*(f"figure_8_{n}.png" for n in (16, 17, 19)), "thornton_ning_1998.png"]
+    names = [*(f"figure_8_{n}.png" for n in (16, 17, 18, 19)), "thornton_ning_1998.png"]
     expected = [str(tmp_path / f"{name.removesuffix('.png')}.{kind}") for name in names for kind in ("png", "csv")]
     assert run("verify", "figures", "--out", tmp_path).split() == expected
     for name in names:

@@ -4,15 +4,13 @@
 Where a comment does not say otherwise the tolerance is 1e-13: the round-off of a few products and roots.
 """
 
-import criteria
 import mpmath as mp
 import numpy as np
 import pytest
 
 import oblique
-from epdem.theory import pair, restitution, timestep, viscous, yielding
+from epdem.theory import pair, printed, restitution, timestep, viscous, yielding
 from epdem.theory.backbones import Cavity, Hertz, Johnson, Thornton
-from epdem.verification import printed
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}  # E = 208 GPa, nu = 0.3, sphere of 10 mm on a plane
 M = 0.032882003107573169
@@ -26,7 +24,26 @@ def test_mean_pressure_of_the_three_regimes():
     """Elastic 4 x/(3 pi): 0.4 at 0.3 pi; cavity (2/3)(1 + ln(x/3)): 4/3 at 3 e; fully plastic: 2.8."""
     assert printed.elastic_mean(3 * np.pi) == exactly(4)
     assert printed.cavity_mean(3 * np.e) == exactly(mp.mpf(4) / 3)
-    assert printed.mean([0.3 * np.pi, 3 * np.e, 1e4]) == pytest.approx([0.4, 4 / 3, 2.8], rel=1e-13)
+    assert printed.mean_pressure([0.3 * np.pi, 3 * np.e, 1e4]) == pytest.approx([0.4, 4 / 3, 2.8], rel=1e-13)
+
+
+def test_pressure_of_a_loading_contact_is_hertz_cut_off_at_the_yield_pressure():
+    """r/a = 0.6: 0.8 of the peak, which is 3/2 of 4/3 E* a^3/R* over pi a^2: 4/pi GPa here."""
+    assert printed.hertz_pressure([0.0, 1.2, 2.0, 3.0], p_0=5.0, a=2.0) == pytest.approx([5, 4, 0, 0], rel=1e-13)
+    p_0 = 4e9 / np.pi
+    contact = {"E_star": 2e11, "R_star": 0.01, "a": 1e-4}
+    assert printed.loading_pressure([0.0, 6e-5], **contact, p_y=9e9) == pytest.approx([p_0, 0.8 * p_0], rel=1e-13)
+    assert printed.loading_pressure([0.0, 6e-5], **contact, p_y=1.1e9) == pytest.approx([1.1e9, 0.8 * p_0], rel=1e-13)
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-4, 1e-2, 0.5, 0.99])
+def test_unloading_force_keeps_its_digits_down_to_a_tiny_circle(share):
+    """8.82 summed over the circle in 40 digits, r = a sqrt(1 - u^2); it goes as (4/3) p a^3/a* when a is small."""
+    with mp.workdps(40):
+        k = mp.mpf(share)
+        inner = lambda u: mp.asin(mp.sqrt(k * k * u * u / (1 - k * k * (1 - u * u))))  # noqa: E731
+        exact = 4 * k * k * mp.quad(lambda u: u * inner(u), [0, 1])
+    assert float(printed.unloading_force(a=2 * share, a_max=2.0, p=3.0)) == exactly(12 * exact)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
@@ -42,7 +59,7 @@ def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
     x, w = np.polynomial.legendre.leggauss(60)
     theta = np.pi / 4 * (x + 1)
     r = a * np.sin(theta)  # the root at the rim becomes smooth
-    ring = 2 * np.pi * r * a * np.cos(theta) * printed.unloading(r, a=a, a_max=a_max, p=p)
+    ring = 2 * np.pi * r * a * np.cos(theta) * printed.unloading_pressure(r, a=a, a_max=a_max, p=p)
     assert float(force) == pytest.approx(np.pi / 4 * float(w @ ring), rel=1e-12, abs=0)  # round-off of 60 nodes
     h = 1e-5 * law.recovered_overlap(top)
     slope = (law.unloading_force(alpha + h, top) - law.unloading_force(alpha - h, top)) / (2 * h)
@@ -52,7 +69,7 @@ def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
 
 def test_mean_pressure_at_first_yield_is_two_thirds_of_the_peak():
     """Printed p_0/Y: 1.61280 at nu = 0.3, 1.55435 at 0.25; 2/3 of their 5 decimals."""
-    assert criteria.first_yield_mean(np.array([0.3, 0.25])) == pytest.approx([1.07520, 1.03623], abs=4e-6)
+    assert printed.first_yield_mean(np.array([0.3, 0.25])) == pytest.approx([1.07520, 1.03623], abs=4e-6)
 
 
 def test_each_body_yields_from_the_speed_whose_energy_presses_hertz_to_1_60_of_its_stress():

@@ -7,10 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from epdem.theory import pair, restitution, yielding
+from epdem.theory import pair, printed, restitution, yielding
 from epdem.theory.backbones import LAWS, Cavity, Hertz, Meyer, Thornton
 from epdem.theory.johnson import Johnson
-from epdem.verification import printed
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169
@@ -110,7 +109,7 @@ def test_thornton_law_and_equation_8_83_are_the_same_number():
     v_y = yielding.yield_speed(p_y=2.8e9, m_star=M, **STEEL)
     speed = v_y * np.geomspace(1e-6, 1e6, 400)
     e_n = restitution.e_n(steel("thornton"), m_star=M, speed=speed)
-    assert e_n == pytest.approx(printed.thornton(speed, v_y=v_y), rel=1e-13, abs=0)
+    assert e_n == pytest.approx(printed.thornton_restitution(speed, v_y=v_y), rel=1e-13, abs=0)
 
 
 @settings(max_examples=25)

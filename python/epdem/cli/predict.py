@@ -32,6 +32,7 @@ def predict(
     adhesion: Annotated[
         str | None, typer.Option("--work-of-adhesion", help='one impact: as "0.1 J/m^2", the laws with adhesion, too')
     ] = None,
+    full: Annotated[bool, typer.Option("--full", help="print the estimated share of elastic waves, too")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Print the prediction of theory for a case; no engine runs.
@@ -59,7 +60,8 @@ def predict(
     if error is not None:
         with error_context(case):
             raise _time_steps(experiments, error, as_json)
-    raise answer(*predictions([(x, predict_experiment(x)) for x in experiments], warnings), as_json)
+    pairs = [(x, predict_experiment(x)) for x in experiments]
+    raise answer(*predictions(pairs, warnings, full=full), as_json)
 
 
 def _time_steps(experiments: "list[Experiment]", error: float, as_json: bool) -> typer.Exit:

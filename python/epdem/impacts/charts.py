@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
-from ..theory.restitution import wu
+from ..theory.printed import wu_restitution
 from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
 from . import oblique
 from .comparison import CHECKED
@@ -82,7 +82,7 @@ def restitution(outcome: Outcome) -> Chart:
     v_y0, plastic = first_yield(x), any(p.yields for p in outcome.predictions.values())
     if plastic and fine.speed[-1] > 100 * v_y0 and x.viscous_restitution is None:
         beyond = fine.speed[fine.speed >= 100 * v_y0]
-        values = wu(beyond, v_y0=v_y0)
+        values = wu_restitution(beyond, v_y0=v_y0)
         above.append(Series("finite-element fit, eq. 8.88", beyond, values, INK, "dash"))
         fit = _beside_fit(float(values[-1]), ends)
     if known:

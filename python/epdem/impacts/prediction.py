@@ -9,11 +9,17 @@ import pandas as pd
 
 from ..laws.strengths import find_law
 from ..theory import validity
+from ..theory.backbone import Backbone
 from ..theory.restitution import Impact
+from ..theory.sliding import first_sliding_yield
+from ..theory.waves import energy_split
+from ..theory.yielding import yield_speed
 from . import oblique
 from .experiment import Experiment, strain_rate
 
 FASTEST = 1e4  # strain rate [1/s] up to which the strength of metals grows with its logarithm
+LARGEST_WAVE_SHARE = 0.05  # above it e_n of real impacts is noticeably lower than that of any law of force
+SURFACE_FRICTION = 0.3  # above it a sliding contact first yields at its surface
 LARGEST_TURN = 1e-3  # error of the overlap by the turn of the line of centres that is not worth a sentence
 
 
@@ -28,6 +34,7 @@ class Prediction(Impact):
     rebound: oblique.Rebound | None = None  # of oblique impacts
     caveats: tuple[str, ...] = ()  # sentences on impacts outside the law's domain
     finite_strain: tuple[str, ...] = ()  # sentences on contacts beyond small strain
+    wave_share: np.ndarray | None = None  # of the kinetic energy that a plane target radiates (section 8.2.4)
     observation_time: float = np.nan  # duration for which sticking bodies are observed [s]; NaN: without adhesion
 
     @property
@@ -72,6 +79,7 @@ def predict(experiment: Experiment) -> Prediction:
         if b.yield_stress is not None and not b.rigid
     }
     strain = x.law.share * impact.radius_max / x.R_star
+    waves = _wave_share(x)
     return Prediction(
         **vars(impact),
         speed=x.speed,
@@ -83,8 +91,11 @@ def predict(experiment: Experiment) -> Prediction:
             *law.caveats(**pair),
             *_too_fast(x, impact.radius_max),
             *_turning(x, impact.contact_time, impact.overlap_max),
+            *_radiating(x, waves),
+            *_surface_yield(x),
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(strain, x.speed)),
+        wave_share=waves,
         observation_time=observed,
     )
 
@@ -115,6 +126,49 @@ def _turning(x: Experiment, contact_time: np.ndarray, overlap: np.ndarray) -> li
         f"neglects: from {angle:.3g} deg on, overlap_max and force_max of engines with positions are lower, by up to "
         f"about {100 * np.nanmax(error):.2g} %"
     ]
+
+
+def _wave_share(x: Experiment) -> np.ndarray | None:
+    """Estimated share of the kinetic energy that a plane target radiates as waves, shape (n,).
+
+    None for two spheres, in which waves return, and where the theory has no history of the force: with adhesion or a
+    dashpot, and for a rigid target or nu of 0.5 or below 0.
+    """
+    law, b = x.theory(), x.target
+    if not isinstance(law, Backbone) or x.viscous_restitution is not None:
+        return None
+    if np.isfinite(b.radius) or b.rigid or not 0.0 <= b.poisson_ratio < 0.4999:
+        return None
+    half_space = {"E": b.young_modulus, "nu": b.poisson_ratio, "density": b.density}
+    return energy_split(law, m_star=x.m_star, speed=x.speed, **half_space)["waves"]
+
+
+def _radiating(x: Experiment, share: np.ndarray | None) -> list[str]:
+    """A sentence on impacts that lose much energy to waves."""
+    if share is None or share.max() <= LARGEST_WAVE_SHARE:
+        return []
+    return [
+        f"elastic waves take an estimated {100 * share.max():.2g} % of the kinetic energy, above "
+        f"{100 * LARGEST_WAVE_SHARE:g} % from {x.speed[share > LARGEST_WAVE_SHARE].min():.3g} m/s on: e_n of real "
+        "impacts is lower than that of any law of force"
+    ]
+
+
+def _surface_yield(x: Experiment) -> list[str]:
+    """A sentence for each material on first yield at the surface under a large friction (section 8.2.5)."""
+    mu = x.oblique.friction if x.oblique else 0.0
+    pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
+    found = {}
+    for b in (x.body, x.target):
+        if mu <= SURFACE_FRICTION or b.yield_stress is None or b.rigid or np.isinf(b.yield_stress):
+            continue
+        ratio = float(first_sliding_yield(mu, b.poisson_ratio)[0])
+        speed = float(yield_speed(p_y=ratio * b.yield_stress, **pair))
+        found[b.material] = (
+            f"friction {mu:g}: a sliding contact of {b.material} yields at its surface from a peak pressure of "
+            f"{ratio * b.yield_stress:.3g} Pa ({ratio:.2f} Y) on, which normal impacts reach at {speed:.3g} m/s"
+        )
+    return [*found.values()]
 
 
 def _softer(x: Experiment) -> tuple[str, ...]:

@@ -179,8 +179,14 @@ def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
         return save(main_chart(outcome), outcome.folder, formats)[0]
 
 
-def predictions(pairs: list[tuple[Experiment, Prediction]], warnings: list[str]) -> tuple[object, list[Shown]]:
-    """Predictions of one case by several laws, with the warnings about the case: document, and table with lines."""
+def predictions(
+    pairs: list[tuple[Experiment, Prediction]], warnings: list[str], *, full: bool = False
+) -> tuple[object, list[Shown]]:
+    """Predictions of one case by several laws, with the warnings about the case: document, and table with lines.
+
+    full: the table has the estimated share of waves, as the document has.
+    """
+    tables = [p.table().assign(wave_share=np.nan if p.wave_share is None else p.wave_share) for _, p in pairs]
     documents = [
         {
             "case": x.name,
@@ -189,11 +195,12 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], warnings: list[str])
             "yields": p.yields,
             "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
             "warnings": [*warnings, *p.warnings],
-            "rows": records(p.table()),
+            "rows": records(table),
         }
-        for x, p in pairs
+        for (x, p), table in zip(pairs, tables, strict=True)
     ]
-    frame = pd.concat([p.table().assign(law=x.law.name) for x, p in pairs])
+    frame = pd.concat([table.assign(law=x.law.name) for (x, _), table in zip(pairs, tables, strict=True)])
+    frame = frame if full else frame.drop(columns="wave_share")
     columns = heads(["law", *frame.columns.drop("law")], {})
     shown: list[Shown] = [frame_table(f"{pairs[0][0].title} (SI units)", frame, columns, digits=6)]
     for x, p in pairs:

@@ -129,6 +129,11 @@ def impacts_sentences(outcome: Outcome) -> list[str]:
             f"{p.time_step:.4g} s; {yielding(prediction)}. e_n of theory goes from {prediction.e_n.max():.4f} to "
             f"{prediction.e_n.min():.4f}."
         )
+        if (share := prediction.wave_share) is not None:
+            said.append(
+                f"Elastic waves take an estimated {100 * share.min():.2g} to {100 * share.max():.2g} % of the kinetic "
+                "energy (section 8.2.4), which no law of force loses."
+            )
     said += [f"Engine {line}." for line in largest_errors(outcome)]
     said += [line[0].upper() + line[1:] + "." for line in against_measured(outcome)]
     residual = rows["energy_residual"].abs().max()

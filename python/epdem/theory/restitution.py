@@ -125,14 +125,3 @@ def impact(law: Curve, *, m_star: Real, speed: Real) -> Impact:
         work_out=out,
         plastic_work=np.asarray(law.plastic_work(top)),
     )
-
-
-def wu(speed: Real, *, v_y0: Real) -> Array:
-    """Finite-element fit. NaN below v/v_y0 = 100.
-
-    Eq. 8.88 [Wu et al. 2003]: e_n = 2.08 (v/v_y0)^(-1/4), v/v_y0 >= 100
-
-    v_y0 [m/s] is the speed of first yield (1.60 Y), not that of 2.8 Y.
-    """
-    ratio = number("speed", speed) / number("v_y0", v_y0)
-    return np.where(ratio >= 100, 2.08 * ratio**-0.25, np.nan)

@@ -224,13 +224,13 @@ def figures(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
+    """Draw figures 8.16 to 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
     from ...base.files import claim
     from ..figures import draw_all
 
     kinds = formats(pictures)
     with claim(out, force=force), status() as progress:
-        progress("four figures")
+        progress("five figures")
         paths = draw_all(out, kinds)
     raise answer({"files": paths}, map(str, paths), as_json)
 
