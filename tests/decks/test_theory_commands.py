@@ -67,7 +67,7 @@ def test_the_share_of_waves_is_estimated_and_warned_of_above_5_percent(tmp_path)
     (said,) = (w for w in found["warnings"] if "waves" in w)
     assert said.startswith(f"elastic waves take an estimated {100 * share:.2g} % of the kinetic energy, above 5 %")
     assert "wave_share" in run("predict", case, "--full") and "wave_share" not in run("predict", case)
-    two = json.loads(run("predict", CASES / "two_materials.toml", "--json"))
+    two = json.loads(run("predict", CASES / "benchmarks/spheres_chung_2011.toml", "--json"))
     assert {row["wave_share"] for row in two["rows"]} == {None}  # waves return from the surface of a sphere
 
 
