@@ -56,7 +56,7 @@ def changed_case(folder, case, *changes):
 
 
 def test_the_share_of_waves_is_estimated_and_warned_of_above_5_percent(tmp_path):
-    """Elastic steel at 70 m/s, nu = 0.25: a share of 1.11 (v/c_0)^0.6 (Hunter 1957); the chapter's impact: about 3 %."""
+    """Elastic steel at 70 m/s, nu = 0.25: a share of 1.11 (v/c_0)^0.6 (Hunter 1957); the chapter's: about 3 %."""
     found = json.loads(run("predict", CASES / "benchmarks/mild_steel_hutchings_1979.toml", "--json"))
     assert 0.03 < found["rows"][0]["wave_share"] < 0.04 and not any("waves" in w for w in found["warnings"])
     changes = ('name = "cavity"', 'name = "hertz"'), ("poisson_ratio = 0.3", "poisson_ratio = 0.25")
