@@ -93,6 +93,7 @@ def refused(base: str | dict, changes: dict, says: str, folder: Path) -> None:
         ),
         ("steel_wall", {"materials.steel.surface_energy": "1 J/m^2"}, "has no adhesion"),
         ("steel_wall", {"law": {"name": "cavity", "first_yield_ratio": 3.0}}, "plastic_ratio (c_P) must exceed"),
+        ("steel_wall", {"law": {"name": "cavity", "plastic_ratio": 300.0}}, "at most exp(300); lower plastic_ratio"),
         (
             "steel_wall",
             {

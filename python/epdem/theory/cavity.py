@@ -12,6 +12,7 @@ from .numerics import Array, Real, gauss, number
 
 FINITE_STRAIN = 0.82  # c of f(s) = 1 - exp(-c s^-0.7) (Jackson and Green 2005)
 STRAIN_EXPONENT = 0.7
+LARGEST_LOG = 300.0  # ln of the fully plastic overlap over that at yield, whose powers are numbers
 LEAST_AREA = 1 / 1.65  # of the area of small strain; below it alpha k alpha^-0.35, F at large strain, would fall
 
 
@@ -57,6 +58,11 @@ class Cavity(Backbone):
             raise ValueError(
                 f"energy would be created at yield: the law's condition is {np.max(excess):.3g}, over "
                 "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)"
+            )
+        if np.any(self.ln_s_P > LARGEST_LOG):
+            raise ValueError(
+                f"the contact would become fully plastic at exp({np.max(self.ln_s_P):.3g}) of the overlap at yield, at "
+                f"most exp({LARGEST_LOG:g}); lower plastic_ratio (c_P)"
             )
         if np.any(self.c_strain < 1e-3):
             raise ValueError(f"finite_strain (c_strain) = {np.min(self.c_strain):g}, must be at least 1e-3")
