@@ -57,7 +57,7 @@ def numbers(folder: Path, text: str) -> dict[str, float]:
     case.write_text(text, encoding="utf-8")
     outcome = run(case, scene_engine("liggghts"), out=folder / "run")
     p, tables = outcome.plan, outcome.results.tables
-    area = p.case.scene.box[0] * p.case.scene.box[1]
+    area = (p.box[1] - p.box[0]) * (p.box[3] - p.box[2])
     rows, spheres, contacts = tables["rows"], tables["particles"], tables["contacts"]
     fall, load = p.phases[0].end, p.phases[1].end
 

@@ -26,8 +26,9 @@ from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, c
 
 from epdem.case.scene import SceneCase, parse
 from epdem.case.toml import LoadedCase
-from epdem.engines.liggghts import resume
 from epdem.engines.liggghts.engine import Liggghts
+from epdem.engines.liggghts.launcher import OUT
+from epdem.engines.restarts import whole_restarts
 from epdem.errors import CaseError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.run import SceneOutcome
@@ -132,7 +133,7 @@ def run(case: SceneCase, what: Liggghts, folder: Path, until: float | None = Non
         if until is not None and step * (case.numerics.time_step or 0.0) > until:
             raise Enough
 
-    goes_on = not (folder / "results.h5").exists() and bool(resume.whole_restarts(folder))
+    goes_on = not (folder / "results.h5").exists() and bool(whole_restarts(folder, folder / OUT))
     try:
         try:
             return run_scene(LoadedCase(case, text, folder), what, out=folder, resume=goes_on, report=report)

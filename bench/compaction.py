@@ -147,7 +147,7 @@ def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
     return density[1:], -total[1:] / (3 * volume / density[1:])
 
 
-def press_numpy(start, *, die, elastic=(E / Y, NU), dt=0.02):
+def press_numpy(start, *, die, elastic: tuple[float, float] = (E / Y, NU), dt=0.02):
     """The same of the law in numpy, with the sums of the step itself; units: Y, mean radius, mass of density Y."""
     x, radius, edge = start
     _, axes, seconds = _course(start, die)

@@ -18,6 +18,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts.deck import files, memory
+from epdem.engines.restarts import whole_restarts
 from epdem.scenes.plan import plan
 from epdem.theory.backbones import ADHESIVE
 
@@ -35,7 +36,7 @@ def full(data: dict) -> dict:
     nothing: dict = {"friction": NOTHING}
     if "viscous" not in data:  # LIGGGHTS has one restitution for both dashpots
         nothing["tangential_restitution"] = 0.999
-    if data["law"]["name"] not in ADHESIVE:  # these have their attraction already
+    if data["law"]["name"] not in ADHESIVE and not data["law"].get("compaction"):  # which have none beside their own
         nothing["cohesion"] = f"{NOTHING} J/m^3"
     rolling = {"rolling": {"model": "epsd2", "coefficient": NOTHING}}
     output = {"rows": 20, "particles": 1, "restarts": 20, "energy": True, "loads": True}
@@ -68,7 +69,7 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
         write_texts(folder, files(p))
         found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * memory(p.model)
         loop_seconds(folder, "in.scene")
-        resume.write_resume(p, folder, resume.whole_restarts(folder)[-1])
+        resume.write_resume(p, folder, whole_restarts(folder, folder / launcher.OUT)[-1])
     times: dict[str, list[float]] = {name: [] for name in folders}
     for _ in range(repeats):
         for name, folder in folders.items():

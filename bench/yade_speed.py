@@ -19,10 +19,9 @@ from pathlib import Path
 
 from epdem.base.declarations import declarations
 from epdem.engines.yade import launcher
-from epdem.engines.yade.classes import title
 
 NATIVE = "YADE's Hertz-Mindlin"
-CLASSES = tuple(f"C++ {title(law)}" for law in declarations())
+CLASSES = tuple(f"C++ {law.title().replace('_', '')}" for law in declarations())
 # of each law that yields, by the names of its LIGGGHTS properties [Pa]
 STRENGTHS = {
     law.parameter(law.strength).property: 1e9 if law.strength == "yield_stress" else 2.8e9

@@ -96,7 +96,7 @@ def _cell(text: str) -> str:
 def python() -> str:
     """The public names of the package with their signatures and docstrings."""
     text = ["# Python\n"]
-    for name in sorted(epdem.__all__):
+    for name in sorted(vars(epdem)["__all__"]):
         thing = getattr(epdem, name)
         if inspect.ismodule(thing):
             text.append(f"## {name}\n\n{inspect.getdoc(thing)}\n")

@@ -49,7 +49,7 @@ def liggghts(x: Experiment) -> tuple[np.ndarray, float]:
     prediction = predict(x)
     with tempfile.TemporaryDirectory() as folder:
         stage = run_plan(plan(x, prediction), engine("liggghts"), Path(folder))
-    rows = compare("liggghts", x.law.name, stage.impacts, prediction, x.check)
+    rows = compare("liggghts", x.law.name, stage.tables["impacts"], prediction, x.check)
     return rows["e_n"].to_numpy(), float(rows["e_n_error"].max())
 
 

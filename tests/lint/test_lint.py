@@ -3,6 +3,7 @@
 
 import re
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -19,12 +20,21 @@ CPP = [str(p) for room in ("cpp_contact", "tests", "bench") for p in sorted((ROO
 CPP = [path for path in CPP if path.endswith((".hpp", ".h", ".cpp"))]
 # clang-tidy reads one source that includes every header of the laws; `make tidy` reads all of C++, in minutes
 LAWS = ["cpp_contact/capi/epdem.cpp", "--", "-std=c++17", "-Icpp_contact/include", '-DEPDEM_VERSION=""']
+# names, attributes and arguments of the scripts of pages; their own lines have few types
+SCRIPTS_OF_PAGES = ["mypy", "--config-file=", "--check-untyped-defs", "--ignore-missing-imports"]
+OF_TYPES = ("assignment", "operator", "index", "var-annotated", "misc", "arg-type", "union-attr", "list-item")
+SCRIPTS_OF_PAGES += [f"--disable-error-code={code}" for code in OF_TYPES]
 SCHEMA = ["check-jsonschema", "--builtin-schema"]
 GITHUB = ROOT / ".github"
 TOOLS = {
     "ruff check": ["ruff", "check", "--output-format", "concise", *PYTHON],
     "ruff format": ["ruff", "format", "--check", *PYTHON],
     "mypy": ["mypy"],
+    "mypy of bench": [*SCRIPTS_OF_PAGES, *(str(p) for p in sorted((ROOT / "bench").glob("*.py")))],
+    "mypy of docs": [
+        *SCRIPTS_OF_PAGES,
+        *(str(p) for p in sorted((ROOT / "docs").glob("*.py")) if p.stem != "paraview"),
+    ],
     "lint-imports": ["lint-imports", "--no-cache"],
     "clang-format": ["clang-format", "--dry-run", "--Werror", *CPP],
     "reuse": ["reuse", "lint", "--lines"],
@@ -39,8 +49,21 @@ TOOLS = {
 @pytest.mark.parametrize("command", [thorough(TOOLS[n], id=n, unless=n != "clang-tidy") for n in TOOLS])
 def test_the_tool_finds_nothing(command):
     path = f"{ROOT}/.venv/bin:/usr/bin:/bin"
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env={"PATH": path})
+    done = subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, env={"PATH": path, "MYPYPATH": "python:bench:tests:docs"}
+    )
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("folder", ["bench", "docs"])
+def test_the_scripts_of_pages_find_what_they_import(folder):
+    """Each is read, not run: ParaView's Python and YADE's run one each."""
+    scripts = [str(p) for p in sorted((ROOT / folder).glob("*.py")) if p.stem not in ("paraview", "community_yade")]
+    code = "import runpy, sys\nfor path in sys.argv[1:]: runpy.run_path(path, run_name='read')"
+    place = {"PYTHONPATH": str(ROOT / folder), "PATH": "/usr/bin:/bin"}
+    words = [sys.executable, "-c", code, *scripts]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, env=place)
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_source_states_its_licence():
