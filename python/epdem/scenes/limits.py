@@ -202,14 +202,31 @@ def refuse_positions(s: Parts) -> None:
             )
 
 
+def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> FloatArray:
+    """How far [m] the nearest of the triangles, shape (n, 3 corners, 3), lies in each sphere; below 0: it does not.
+
+    places: centres, shape (m, 3), radii: shape (m,).
+    """
+    found = np.full(len(radii), -np.inf)
+    low, high = places - radii[:, None], places + radii[:, None]
+    beside = (triangles.min(axis=1) > high.max(axis=0)) | (triangles.max(axis=1) < low.min(axis=0))
+    for triangle in triangles[~beside.any(axis=1)]:
+        near = np.flatnonzero(((triangle.min(axis=0) <= high) & (triangle.max(axis=0) >= low)).all(axis=1))
+        if near.size:
+            import trimesh  # a second: only where a wall is near
+
+            same = np.tile(triangle, (near.size, 1, 1))
+            closest = trimesh.triangles.closest_point(same, places[near])  # type: ignore[no-untyped-call]
+            found[near] = np.maximum(found[near], radii[near] - np.linalg.norm(closest - places[near], axis=1))
+    return found
+
+
 def refuse_bodies_in_walls(s: Parts, triangles: dict[str, FloatArray]) -> None:
     """Raise CaseError for a single sphere that comes into a wall with a phase but the first.
 
     A wall whose place at that time the run alone knows is not checked: one that a force drives, or that has moved in a
     phase with a condition.
     """
-    from trimesh.triangles import closest_point
-
     for number, phase in enumerate(s.phase):
         before = [(p.moves, p.seconds) for p in s.phase[:number]]
         unknown = {name for p in s.phase[:number] if p.condition for name in p.moves}
@@ -218,16 +235,15 @@ def refuse_bodies_in_walls(s: Parts, triangles: dict[str, FloatArray]) -> None:
         walls = meshes.at_end(before, known)
         for b in coming:
             center = np.array(b.position)
-            gaps = {w.name: abs(center["xyz".index(w.axis)] - w.at) for w in s.planes}
-            gaps |= {w.name: abs(center["xyz".index(w.axis)] - w.at) for w in s.gates if phase.name in w.phases}
+            planes = [w for w in (*s.planes, *s.gates) if not w.phases or phase.name in w.phases]
+            found = {w.name: b.radius - abs(center["xyz".index(w.axis)] - w.at) for w in planes}
             for name, corners in walls.items():
-                nearest = closest_point(corners, np.tile(center, (len(corners), 1)))  # type: ignore[no-untyped-call]
-                gaps[name] = float(np.linalg.norm(nearest - center, axis=1).min())
-            for name, gap in gaps.items():
-                if gap < b.radius * (1.0 - TOUCH):
+                found[name] = float(depths(corners, center[None], np.array([b.radius]))[0])
+            for name, depth in found.items():
+                if depth > TOUCH * b.radius:
                     raise CaseError(
                         f"scene.body.{b.name}.position: at the begin of phase {phase.name} the body overlaps wall "
-                        f"{name} by {b.radius - gap:.3g} m; move the body, or give it another phase"
+                        f"{name} by {depth:.3g} m; move the body, or give it another phase"
                     )
 
 

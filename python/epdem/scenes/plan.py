@@ -13,10 +13,10 @@ import pandas as pd
 
 from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
-from ..case.walls import CasePhase, Limits, LinearMove, Move, RotateMove, Vector3
+from ..case.walls import CasePhase, Limits, LinearMove, Move, PressMove, RotateMove, Vector3
 from ..jobs.engine import Engine, Report
 from ..jobs.stage import Tables
-from . import meshes
+from . import meshes, servo
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
     PressedBed,
@@ -356,11 +356,13 @@ def _phases(scene: Parts, rows: int, every: int, dt: float, given: float | None)
 
 
 def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
-    """The walls whose forces a scene requests: for its output unless it names rows, for a condition, for a measure."""
+    """The walls whose forces a scene requests: for its output unless it names rows, for a condition, for a
+    measure, and those that a force drives."""
     gates = {w.name for w in scene.gates}
     loads = {w.name for w in scene.wall} - gates if case.output.loads and not scene.row else set()
     loads |= {p.condition.wall for p in scene.phase if p.condition and p.condition.wall}
     loads |= {m.wall for m in scene.measure if isinstance(m, Load)}
+    loads |= {m.wall for p in scene.phase for m in p.move if isinstance(m, PressMove)}
     return tuple(w.name for w in scene.wall if w.name in loads)
 
 
@@ -391,7 +393,9 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_steps(case, rows, duration, duration / steps)
     every = _row(rows, steps, fixed)
 
-    phases = _phases(scene, rows, every, dt, given)
+    count = sum(f.count for f in filled) + len(scene.table) + len(scene.later)
+    planned = _phases(scene, rows, every, dt, given)
+    phases = tuple(servo.limited(contact_model, scene, triangles, count, planned))
     whole = phases[-1].end // every
 
     def interval(count: int, rows: int = max(rows, whole)) -> int:

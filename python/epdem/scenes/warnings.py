@@ -11,9 +11,9 @@ from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
-from . import filling, stages
+from . import filling, servo, stages
 from .columns import STRAINS, bodies, reduced
-from .limits import dense_beds, largest_density, overlaps
+from .limits import dense_beds, depths, largest_density, overlaps
 from .meshes import FloatArray, sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
 from .timestep import stable_step
@@ -30,7 +30,7 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
     found = _law(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
-    return found + _time_steps(p) + _durations(p) + _overlaps(p) + _walls(p)
+    return found + servo.slower(p) + _time_steps(p) + _durations(p) + _overlaps(p) + _walls(p)
 
 
 def _law(p: ScenePlan) -> list[str]:
@@ -78,7 +78,8 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
     ]
     pressing = stages.warnings(p, tables) if "stages" in tables else []
     effect = PRESSED if p.model.compaction else validity.OVERESTIMATED
-    return [*validity.finite_strain(largest, where, effect), *no_void, *pressing] + [
+    forces = servo.not_reached(p, tables["rows"])
+    return [*validity.finite_strain(largest, where, effect), *no_void, *forces, *pressing] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
         for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
@@ -149,10 +150,9 @@ def _overlaps(p: ScenePlan) -> list[str]:
 
 
 def _walls(p: ScenePlan) -> list[str]:
-    """Regions that a wall runs through and spheres that lie in one, of walls that have not moved yet."""
+    """Regions that a wall runs through and spheres of the start that lie in one, of walls that have not moved yet."""
     moved, found = set[str](), {}
     table = [(f"sphere {n} of scene.fill and scene.body", s, p.phases[0].name) for n, s in enumerate(p.scene.table, 1)]
-    table += [(f"scene.body.{b.name}", b.sphere, b.phase or "") for b in p.scene.later]
     for phase in p.phases:
         gates = [w for w in p.scene.gates if w.name in phase.gates]
         walls = {w.name: sheet(w, p.box) for w in (*p.scene.planes, *gates)}
@@ -201,25 +201,6 @@ def crosses(region: Region, triangles: FloatArray, free: float) -> bool:
 
         corners, faces, _ = slice_faces_plane(corners, faces, -normal, normal * distance)  # type: ignore[no-untyped-call]
     return len(faces) > 0
-
-
-def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> FloatArray:
-    """How far [m] the nearest of the triangles, shape (n, 3 corners, 3), lies in each sphere; below 0: it does not.
-
-    places: centres, shape (m, 3), radii: shape (m,).
-    """
-    found = np.full(len(radii), -np.inf)
-    low, high = places - radii[:, None], places + radii[:, None]
-    beside = (triangles.min(axis=1) > high.max(axis=0)) | (triangles.max(axis=1) < low.min(axis=0))
-    for triangle in triangles[~beside.any(axis=1)]:
-        near = np.flatnonzero(((triangle.min(axis=0) <= high) & (triangle.max(axis=0) >= low)).all(axis=1))
-        if near.size:
-            import trimesh  # a second: only where a wall is near
-
-            same = np.tile(triangle, (near.size, 1, 1))
-            closest = trimesh.triangles.closest_point(same, places[near])  # type: ignore[no-untyped-call]
-            found[near] = np.maximum(found[near], radii[near] - np.linalg.norm(closest - places[near], axis=1))
-    return found
 
 
 def lost_spheres(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:

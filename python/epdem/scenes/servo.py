@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls that a force drives: the speed up to which dashpots leave the servo stable, and the force that a phase reached.
+
+The speed of the wall is v (1 - F/F_0). The force F of a step has the dashpots' part n c times the speed of the step
+before, so that the speed alternates with growing amplitude where n c v/F_0 > 1.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from ..case.parts import Parts
+from ..case.walls import Move, PressMove
+from ..theory.pair import E_star
+from ..theory.viscous import damping_ratio
+from .meshes import FloatArray
+from .model import Model
+
+if TYPE_CHECKING:
+    from .plan import Phase, ScenePlan
+
+GAIN = 0.5  # largest n c v/F_0
+COVER = 0.9  # share of a wall that the circles of spheres cover, at most
+TAIL, REACHED = 0.2, 0.05  # of a phase, over which the force is averaged; of the force
+
+
+def stable_speed(m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, move: PressMove) -> float:
+    """Highest speed [m/s] of a wall with gain GAIN, if as many of `count` spheres touch it as have room; inf without
+    dashpots. Each contact has its share of the force and c = 2 sqrt(5/6) zeta sqrt(2 E* a m)."""
+    a, b, c = np.moveaxis(triangles[move.wall], 1, 0)
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    wall = m.wall_types[scene.meshes[move.wall].material] - 1
+    found = math.inf
+    for particles in scene.filled:
+        one = m.type_of(particles.material) - 1
+        sphere, other = m.types[one], m.types[wall]
+        E = float(E_star(sphere.young_modulus, sphere.poisson_ratio, other.young_modulus, other.poisson_ratio))
+        zeta = float(damping_ratio(m.viscous[one][wall])) if m.viscous else 0.0
+        for radius in particles.radii():
+            n = max(1.0, min(count, COVER * area / (math.pi * radius**2)))
+            contact = (0.75 * move.force / n * radius / E) ** (1 / 3)
+            mass = sphere.density * 4 / 3 * math.pi * radius**3
+            damping = n * 2 * math.sqrt(5 / 6) * zeta * math.sqrt(2 * E * contact * mass)
+            found = min(found, GAIN * move.force / damping if damping else math.inf)
+    return found
+
+
+def limited(
+    m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, phases: Iterable["Phase"]
+) -> Iterator["Phase"]:
+    """The phases, in which no wall that a force drives is faster than its stable speed."""
+
+    def slow(move: Move) -> Move:
+        if not isinstance(move, PressMove):
+            return move
+        most = float(f"{stable_speed(m, scene, triangles, count, move):.3g}")
+        return move.model_copy(update={"highest_speed": min(move.highest_speed, most)})
+
+    for phase in phases:
+        yield replace(phase, case=phase.case.model_copy(update={"move": [slow(move) for move in phase.case.move]}))
+
+
+def slower(p: "ScenePlan") -> list[str]:
+    """A sentence for each wall that a force drives and that is slower than the case says."""
+    found = []
+    for given, phase in zip(p.scene.phase, p.phases, strict=True):
+        for one, other in zip(given.move, phase.case.move, strict=True):
+            if isinstance(one, PressMove) and isinstance(other, PressMove) and one != other:
+                found.append(
+                    f"scene.phase.{phase.name}.move: with the dashpots of [viscous] wall {one.wall} would oscillate at "
+                    f"highest_speed = {one.highest_speed:g} m/s; it has at most {other.highest_speed:g} m/s"
+                )
+    return found
+
+
+def not_reached(p: "ScenePlan", rows: pd.DataFrame) -> list[str]:
+    """A sentence for each wall that a force drives whose force is not the requested one at the end of a phase, which no
+    condition ends."""
+    found, begin = [], 0
+    for phase in p.phases:
+        presses = {name: move for name, move in phase.moves.items() if isinstance(move, PressMove)}
+        for name, move in presses.items() if not phase.case.condition else ():
+            after = phase.end - max(p.every, TAIL * (phase.end - begin))
+            tail = rows[(rows["step"] > after) & (rows["step"] <= phase.end)]
+            force = -float((tail[[f"{name}_force_{axis}" for axis in "xyz"]] @ np.array(move.direction)).mean())
+            if abs(force / move.force - 1.0) > REACHED:
+                found.append(
+                    f"scene.phase.{phase.name}.move: the force of wall {name} is {force:.4g} N in the last rows, "
+                    f"requested are {move.force:g} N; give a longer duration, or a lower highest_speed if it oscillates"
+                )
+        begin = phase.end
+    return found

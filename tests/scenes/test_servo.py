@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A wall that a force drives reaches its force beside dashpots, and a phase in which it does not says so."""
+
+import math
+
+import pytest
+from parts_cases import FLOOR, parts
+from scene_runs import run, write_case
+
+from engines.lammps_decks import needs_lammps
+from epdem.case.scene import parse
+from epdem.scenes.plan import plan
+from epdem.scenes.warnings import planned_warnings
+
+HOSTS = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("lammps", marks=needs_lammps),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
+]
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "3.05 mm"], "size": ["18 mm", "18 mm"]}
+NINE = [(x, y) for x in (-4, 0, 4) for y in (-4, 0, 4)]
+
+
+def pressed(*, duration="20 ms", restitution=0.6, speed="0.2 m/s"):
+    """Nine spheres under a plate, 50 mN."""
+    press = {"wall": "lid", "kind": "press", "direction": "-z", "force": "50 mN", "highest_speed": speed}
+    ball = {"material": "glass", "radius": "1.5 mm"}
+    data = parts(
+        gravity="0 m/s^2",
+        wall=[FLOOR, LID | {"material": "steel"}],
+        fill=[],
+        body=[ball | {"name": f"b{n}", "position": [f"{x} mm", f"{y} mm", "1.5 mm"]} for n, (x, y) in enumerate(NINE)],
+        phase=[{"name": "press", "duration": duration, "move": [press]}],
+    )
+    data |= {"law": {"name": "hertz"}, "numerics": {"time_step": "5e-6 s", "highest_speed": "0.1 m/s"}}
+    return data | ({"viscous": {"restitution": restitution}} if restitution else {})
+
+
+@pytest.mark.parametrize("engine", HOSTS)
+def test_a_servo_beside_dashpots_reaches_its_force(engine, tmp_path):
+    """At 0.2 m/s n c v/F is 6: the speed alternated between both limits, at 65 to 72 mN and powers of both signs."""
+    data = pressed() | {"output": {"rows": 40, "particles": 4, "energy": True}}
+    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    rows, table = outcome.results.rows, outcome.results.energy_balance
+    assert rows["lid_force_z"].tail(8).to_numpy() == pytest.approx(0.05, rel=1e-3)
+    # E* and Hertz's overlap of a ninth of the force: the plate puts in what spheres hold, dashpots take the rest
+    E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    overlap = (0.75 * 0.05 / 9 / (E_star * math.sqrt(1.5e-3))) ** (2 / 3)
+    assert table["elastic"].iloc[-1] == pytest.approx(2 * 0.4 * 0.05 * overlap, rel=0.1)  # of both ends of nine
+    assert 1 < table["work"].iloc[-1] / table["elastic"].iloc[-1] < 1.6
+    assert not [said for said in outcome.warnings if "the force of wall lid" in said]
+    (said,) = [said for said in planned_warnings(outcome.plan) if "oscillate" in said]
+    assert "scene.phase.press.move: " in said and "highest_speed = 0.2 m/s; it has at most" in said
+
+
+@needs_lammps
+def test_a_servo_that_does_not_reach_its_force_says_so(tmp_path):
+    data = pressed(duration="0.4 ms", restitution=None) | {"output": {"rows": 10, "particles": 0}}
+    outcome = run(write_case(data, tmp_path), "lammps", out=tmp_path / "out")
+    found = outcome.results.rows["lid_force_z"].tail(2).mean()
+    (said,) = [said for said in outcome.warnings if "the force of wall lid" in said]
+    assert f"the force of wall lid is {found:.4g} N in the last rows, requested are 0.05 N" in said
+
+
+def test_without_dashpots_and_below_the_stable_speed_a_wall_has_the_speed_of_the_case():
+    for data in (pressed(restitution=None), pressed(speed="0.001 m/s")):
+        p = plan(parse(data))
+        assert p.phases[0].moves == p.scene.phase[0].moves
+        assert not [said for said in planned_warnings(p) if "oscillate" in said]
