@@ -102,6 +102,27 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
     assert seen >= 15
 
 
+def test_options_in_sentences_are_those_of_their_commands():
+    """Of `epdem COMMAND --x` the command has it; of `--x` alone one of the commands, or a script of bench/ or docs/."""
+    options = {
+        name: {o for p in c.params for o in (*p.opts, *p.secondary_opts)} for name, c in guide._commands().items()
+    }
+    scripts = "".join(p.read_text() for room in ("bench", "docs") for p in (ROOT / room).glob("*.py"))
+    others, seen = ("srun", "valgrind", "--fmad=false"), 0
+    for path in PAGES:
+        for code in re.findall(r"`([^`\n]+)`", FENCE.sub("", path.read_text())):
+            words = code.removesuffix("epdem --install-completion").split()  # an option of typer
+            names = (" ".join(words[1:3]), *words[1:2]) if words[:1] == ["epdem"] else ()
+            for option in (
+                re.findall(r"(?<![\w-])--[a-z][\w-]*", " ".join(words)) if words and words[0] not in others else ()
+            ):
+                own = next((options[name] for name in names if name in options), set().union(*options.values()))
+                known = option in own or (not names and (option in scripts or "/" in words[0]))
+                assert known, f"{path.name}: {code}"
+                seen += 1
+    assert seen > 100
+
+
 @pytest.mark.thorough
 @pytest.mark.liggghts
 def test_every_block_of_the_tour_runs(tmp_path):

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from epdem.engines import scene_engine
 from epdem.engines.embedded import Embedded
 from epdem.engines.liggghts.engine import Liggghts
-from epdem.errors import CaseError
+from epdem.errors import CaseError, EngineError
 from epdem.laws.library import Law
 from epdem.verification import native, stability
 from epdem.verification.cli import app
@@ -176,6 +176,15 @@ def test_overlap_at_the_start_stores_its_work(name, tmp_path):
     s = setting(BY_NAME["start_overlap_2"], "hertz")
     assert s.e_n == pytest.approx(np.sqrt(1 + 2**2.5), rel=1e-9)
     assert ladder(s, Bench(engine(name), tmp_path), [0.01])["error"].item() < 1e-3
+
+
+@pytest.mark.parametrize(("error", "status"), [(CaseError, "not representable"), (EngineError, "failed")])
+def test_a_set_up_that_an_engine_cannot_be_given_has_not_failed(error, status, tmp_path):
+    def measure(s, bench):
+        raise error("no such wall")
+
+    found = judge(BY_NAME["corner_02"], "thornton", Bench(Embedded(), tmp_path), measure)
+    assert (found["status"], found["reason"]) == (status, "no such wall")
 
 
 @pytest.mark.liggghts

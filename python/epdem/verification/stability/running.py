@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ...errors import EngineError, EpdemError
+from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
 from ...impacts.plan import stability_limit, starting_phases
@@ -181,6 +181,8 @@ def judge(extreme: Extreme, law: str, bench: Bench, measures: Callable[[Setting,
         if bench.positions and (why := not_representable(s.x, reach * s.overlap_max)):
             return row | {"status": "not representable", "reason": why}
         row = STUDIES[extreme.kind].judged(row | measures(s, bench))
+    except CaseError as error:  # of what the engine cannot be given
+        return row | {"status": "not representable", "reason": str(error)}
     except (EpdemError, FloatingPointError) as error:
         row |= {"passed": False, "reason": str(error)}
     status = "passed" if row.pop("passed") else "failed"
