@@ -11,7 +11,9 @@
 #include "force.h"
 #include "kernels/gather.hpp"
 #include "memory.h"
+#include "modify.h"
 #include "neigh_list.h"
+#include "utils.h"
 
 namespace epdem::lammps {
 
@@ -20,8 +22,8 @@ using namespace LAMMPS_NS;
 namespace {
 
 constexpr int most_beside = 2 + FixHistory::columns + 3;  // of an atom that is sent, beside its contacts
-/// First number of a restart file; files of before begin with the place of a law, from 0 on.
-constexpr double restart_form = -2.0;
+/// First number of a restart file; files of before begin with the place of a law, from 0 on, or lack the walls.
+constexpr double restart_form = -3.0, form_without_walls = -2.0;
 
 }  // namespace
 
@@ -213,6 +215,7 @@ void FixHistory::rename_partners() {
 
 /// Commands between two runs may add, remove and sort atoms.
 void FixHistory::post_run() {
+  has_run_ = true;
   collect();
   page_holds_ = false;
 }
@@ -303,6 +306,10 @@ void FixHistory::write_restart(FILE* file) {
   std::vector<double> stored{restart_form};
   stored.insert(stored.end(), identity_.begin(), identity_.end());
   stored.insert(stored.end(), {evaluations_, strain[0], strain[1]});
+  std::string walls;  // their IDs, which have no blank
+  for (const Fix* fix : modify->get_fix_by_style("^wall/ep")) walls += std::string(fix->id) + " ";
+  stored.push_back(static_cast<double>(walls.size()));
+  stored.insert(stored.end(), walls.begin(), walls.end());
   const int bytes = static_cast<int>(stored.size() * sizeof(double));
   fwrite(&bytes, sizeof bytes, 1, file);
   fwrite(stored.data(), 1, bytes, file);
@@ -310,12 +317,27 @@ void FixHistory::write_restart(FILE* file) {
 
 void FixHistory::restart(char* stored) {
   const double* const values = reinterpret_cast<const double*>(stored);
-  if (values[0] != restart_form)
+  if (values[0] != restart_form && values[0] != form_without_walls)
     error->all(FLERR, "pair_style ep: the restart file comes from a former version of epdem; run its deck again");
   identity_.assign(values + 1, values + 5);
   layout_.values = static_cast<int>(values[4]);
   evaluations_ = values[5];
   std::copy_n(values + 6, 2, strain_);
+  if (values[0] == restart_form) walls_ = utils::split_words(std::string(values + 9, values + 9 + long(values[8])));
+}
+
+std::string FixHistory::claim_wall(const std::string& fix, bool found) {
+  const auto known = std::find(walls_.begin(), walls_.end(), fix);
+  const bool listed = known != walls_.end();
+  if (listed && found) walls_.erase(known);
+  if (found || walls_.empty()) return "";
+  if (listed) return "its contacts of the restart file ended with the first run; give the fix before this run";
+  std::string others;
+  for (const std::string& wall : walls_)
+    if (!modify->get_fix_by_id(wall)) others += " " + wall;
+  if (has_run_ || others.empty()) return "";
+  return "the restart file holds contacts of walls with the IDs" + others +
+         ", and none of a wall with this ID; give the fix its ID of before, a new wall after a run 0";
 }
 
 int FixHistory::size_restart(int i) { return static_cast<int>(held_[i].size()) + 1 + columns; }

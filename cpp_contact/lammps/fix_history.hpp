@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "epdem/compaction.hpp"
@@ -73,6 +74,10 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Adds the dents of a block to the sums of the atoms of this rank.
   void note_dents(const kernels::Block& b, int n, bool wall);
 
+  /// Walls whose contacts are in the restart file and that no fix has taken yet, by the ID of their fix.
+  /// found: whether the fix with this ID got them. Gives what is wrong with a wall that is used for the first time.
+  std::string claim_wall(const std::string& fix, bool found);
+
   int pack_forward_comm(int n, int* atoms, double* buffer, int, int*) override;
   void unpack_forward_comm(int n, int first, double* buffer) override;
   int setmask() override;
@@ -105,6 +110,8 @@ class FixHistory : public LAMMPS_NS::Fix {
 
   LAMMPS_NS::NeighList* const* list_ = nullptr;
   Layout layout_;
+  std::vector<std::string> walls_;  // of claim_wall
+  bool has_run_ = false;            // since the restart file was read
   std::vector<double> identity_;  // of the models whose histories these are: their ids, numbers of a contact
   double evaluations_ = 0.0;
   double strain_[2] = {};

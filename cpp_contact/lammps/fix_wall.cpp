@@ -11,6 +11,7 @@
 #include "domain.h"
 #include "epdem/adhesive.hpp"
 #include "epdem/compaction.hpp"
+#include "epdem/kinematics.hpp"
 #include "error.h"
 #include "force.h"
 #include "modify.h"
@@ -93,6 +94,11 @@ void FixWall::init() {
   if (words_.models.compaction != pair_->models().compaction)
     error->all(FLERR, "{}: compaction is {} here and {} in pair_coeff; give `compaction on` to both or to none", place_,
                words_.models.compaction ? "on" : "off", words_.models.compaction ? "off" : "on");
+  if (!claimed_) {
+    const std::string wrong = pair_->history()->claim_wall(id, restart_reset != 0);
+    if (!wrong.empty()) error->all(FLERR, "{}, ID {}: {}", place_, id, wrong);
+    claimed_ = true;
+  }
   constants_.assign(most_constants * (atom->ntypes + 1), 0.0);
   for (const int type : types_of_group())
     put_constants(*words_.models.law, pair_->words_of(type, place_).material, words_.material, words_.coefficients,
@@ -242,7 +248,9 @@ void FixWall::finish(int n) {
     const int i = b.i[k];
     double *const f = atom->f[i], *const torque = atom->torque[i];
     const double* const x = atom->x[i];
-    const auto point = [&](int axis) { return x[axis] - b.from_wall[axis].a[k]; };
+    const double distance = atom->radius[i] - b.overlap.a[k];
+    const double arm = distance > 0.0 ? 1.0 + 0.5 * b.overlap.a[k] / distance : 1.0;
+    const auto point = [&](int axis) { return x[axis] - arm * b.from_wall[axis].a[k]; };
     for (int axis = 0; axis < 3; ++axis) {
       f[axis] += b.force[axis].a[k];
       torque[axis] += b.torque_i[axis].a[k];
@@ -486,7 +494,11 @@ void FixWallRegion::find(int i, std::vector<Contact>& found) {
   for (int k = 0; k < count; ++k) {
     const Region::Contact& at = region_->contact[k];
     Contact c{at.iwall, at.r, {at.delx, at.dely, at.delz}, {}};
-    if (moves_) region_->velocity_contact(c.velocity, x, k);
+    if (moves_) {
+      const Vec<double> away{at.delx, at.dely, at.delz}, deeper = to_middle(atom->radius[i] - at.r, away);
+      double centre[3] = {x[0] + deeper.x, x[1] + deeper.y, x[2] + deeper.z};  // over the middle of the overlap
+      region_->velocity_contact(c.velocity, centre, k);
+    }
     found.push_back(c);
   }
 }

@@ -27,7 +27,8 @@ class FixWall : public LAMMPS_NS::Fix {
   void post_neighbor() override { candidates_valid_ = false; }
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
-  /// Force of the wall on all spheres, torque about the origin of these forces at the surface, power of the wall.
+  /// Force of the wall on all spheres, torque about the origin of these forces in the middle of each overlap,
+  /// power of the wall.
   double compute_vector(int axis) override;
 
   void grow_arrays(int atoms) override;
@@ -90,6 +91,7 @@ class FixWall : public LAMMPS_NS::Fix {
   std::vector<std::vector<double>> held_;  // by atom, a record for each contact: number of the part, history
   std::vector<int> candidates_;
   bool candidates_valid_ = false;
+  bool claimed_ = false;  // its contacts of a restart file, if there is one
   PairEp* pair_ = nullptr;
   std::vector<double> constants_;   // by type
   kernels::Kernel kernel_[2] = {};  // the second one is complete

@@ -150,7 +150,7 @@ void read_parameters(WordReader& reader, const Law& law, std::vector<double>& va
 
 void read_options(WordReader& reader, Words& words) {
   constexpr Range not_negative{0.0, unlimited, true};
-  constexpr Range restitution{viscous_restitution_min, 1.0, true, true};
+  constexpr Range restitution{viscous_restitution_min, 1.0, true, true}, tangential{0.0, 1.0, false, true};
   const std::vector<std::string> options{
       "tangential", "restitution", "rolling", "cohesion", "normal_restitution", "tangential_restitution", "compaction"};
   std::vector<bool> seen(options.size());
@@ -173,7 +173,7 @@ void read_options(WordReader& reader, Words& words) {
     } else if (option == 4) {
       words.coefficients.normal_restitution = reader.next_number("normal_restitution e", restitution);
     } else if (option == 5) {
-      words.coefficients.tangential_restitution = reader.next_number("tangential_restitution e", restitution);
+      words.coefficients.tangential_restitution = reader.next_number("tangential_restitution e", tangential);
     } else if (option == 6) {
       words.models.compaction = reader.next_of("compaction", {"off", "on"});
     } else {

@@ -16,10 +16,13 @@
 
 #include "comm.h"
 #include "contact_models.h"
+#include "epdem/vec.hpp"
 #include "fix_wall_gran_base.h"
 #include "pair_gran_base.h"
 
 namespace epdem::liggghts {
+
+inline Vec<double> vector_of(const double* v) { return {v[0], v[1], v[2]}; }
 
 /// A law's name as a LIGGGHTS model.
 template <class Law>

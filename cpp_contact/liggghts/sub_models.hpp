@@ -15,8 +15,6 @@ namespace epdem::liggghts {
 
 using namespace LIGGGHTS::ContactModels;
 
-inline Vec<double> vector_of(const double* v) { return {v[0], v[1], v[2]}; }
-
 inline void add(double* to, double share, const Vec<double>& v) {
   to[0] += share * v.x;
   to[1] += share * v.y;
@@ -25,6 +23,17 @@ inline void add(double* to, double share, const Vec<double>& v) {
 
 /// Whether the step counts and histories are stored.
 inline bool keeps(const SurfacesIntersectData& s) { return s.computeflag && s.shearupdate; }
+
+/// Adds friction F on i [N] and its torques.
+inline void add_friction(const SurfacesIntersectData& s, const Vec<double>& F, ForceData& fi, ForceData& fj) {
+  const double share = s.is_wall ? s.area_ratio : 1.0;
+  const Vec<double> lever = cross(vector_of(s.en), F);
+  add(fi.delta_F, share, F);
+  add(fi.delta_torque, share, (-s.cri) * lever);
+  if (s.is_wall) return;
+  add(fj.delta_F, -1.0, F);
+  add(fj.delta_torque, 1.0, (-s.crj) * lever);
+}
 
 /// Friction beside one of our laws; `normal` is the law's own.
 template <class Friction, bool flattens>
@@ -78,13 +87,7 @@ class FrictionModel : public TangentialModelBase {
     sliding.pressed.load = s.Fn;
     const Vec<double> F = Friction::template force<flattens>(sliding, history, Booking{normal_.tally, s, *this});
     if (values > 0 && sliding.keeps) std::memcpy(s.contact_history + offset_, &history, values * sizeof(double));
-    const double share = s.is_wall ? s.area_ratio : 1.0;
-    const Vec<double> lever = cross(n, F);
-    add(fi.delta_F, share, F);
-    add(fi.delta_torque, share, (-s.cri) * lever);
-    if (s.is_wall) return;
-    add(fj.delta_F, -1.0, F);
-    add(fj.delta_torque, 1.0, (-s.crj) * lever);
+    add_friction(s, F, fi, fj);
   }
 
   void surfacesClose(SurfacesCloseData& s, ForceData&, ForceData&) override {
@@ -112,26 +115,13 @@ class FrictionModel : public TangentialModelBase {
   int offset_ = 0;
 };
 
-/// Notes the place of the first value that a model adds to the history.
-struct NotedSetup : LIGGGHTS::IContactHistorySetup {
-  explicit NotedSetup(LIGGGHTS::IContactHistorySetup* of) : of(of) {}
-  int add_history_value(std::string name, std::string newton_flag) override {
-    const int at = of->add_history_value(std::move(name), std::move(newton_flag));
-    if (first < 0) first = at;
-    return at;
-  }
-
-  LIGGGHTS::IContactHistorySetup* const of;
-  int first = -1;
-};
-
-/// LIGGGHTS's tangential history. Its class judges anew whether a contact slides in a step that is evaluated once more.
-class LiggghtsSpring : NotedSetup, public TangentialModel<TANGENTIAL_HISTORY> {
+/// LIGGGHTS's tangential history with the dashpot inside the limit of friction, where its class has it outside.
+class LiggghtsSpring : public TangentialModel<TANGENTIAL_HISTORY> {
   using Spring = TangentialModel<TANGENTIAL_HISTORY>;
 
  public:
   template <class Site>
-  explicit LiggghtsSpring(const Site& site) : NotedSetup(site.history), Spring(site.lmp, this, site.contact) {}
+  explicit LiggghtsSpring(const Site& site) : Spring(site.lmp, site.history, site.contact) {}
 
   void connectToProperties(PropertyRegistry& registry) override {
     Spring::connectToProperties(registry);
@@ -139,13 +129,17 @@ class LiggghtsSpring : NotedSetup, public TangentialModel<TANGENTIAL_HISTORY> {
   }
 
   void surfacesIntersect(const SurfacesIntersectData& s, ForceData& fi, ForceData& fj) override {
-    if (keeps(s) || !SlidingSpring::still_slides(s.kt * length(vector_of(s.contact_history + first)),
-                                                 mu_[s.itype][s.jtype] * std::fabs(s.Fn)))
-      return Spring::surfacesIntersect(s, fi, fj);
-    SurfacesIntersectData slides = s;
-    slides.gammat = 0.0;
-    Spring::surfacesIntersect(slides, fi, fj);
-    s.P_diss = slides.P_diss;
+    if (!(s.gammat > 0.0)) return Spring::surfacesIntersect(s, fi, fj);
+    SurfacesIntersectData undamped = s;
+    undamped.gammat = 0.0;
+    undamped.area_ratio = 1.0;
+    ForceData of_spring, none;
+    Spring::surfacesIntersect(undamped, of_spring, none);
+    const Vec<double> spring = vector_of(of_spring.delta_F), v{s.vtr1, s.vtr2, s.vtr3};
+    const Vec<double> F = with_dashpot(spring, s.gammat, v, mu_[s.itype][s.jtype] * std::fabs(s.Fn));
+    s.P_diss = undamped.P_diss;
+    if (heating) s.P_diss += dot(spring - F, v);
+    add_friction(s, F, fi, fj);
   }
 
  private:

@@ -132,7 +132,8 @@ def test_elastic_rebound_of_the_patch_has_maw_barber_and_fawcetts_shape_but_for_
 def damped(e, tan_theta, zeta, *, pulls, steps=40000):
     """Impulse ratio f/mu of an impact with a dashpot beside the normal force and one beside the one spring.
 
-    The dashpot of the spring acts wherever the spring is below mu F, and nothing limits its force.
+    The dashpot of the spring acts wherever the spring is below mu F, and nothing limits its force, as in LIGGGHTS's own
+    models (`pulls`); else the limit holds spring and dashpot.
     """
     log_e = np.log(e)
     beta, c = -log_e / np.hypot(log_e, np.pi), 2 * np.sqrt(5 / 6)
@@ -151,6 +152,7 @@ def damped(e, tan_theta, zeta, *, pulls, steps=40000):
             T, s = MU * abs(F), MU * abs(F) / k_t
         else:
             T = k_t * s + c * beta * np.sqrt(k_t * MASS) * patch
+        T = T if pulls else min(T, MU * F)
         v += 0.5 * dt * F / MASS
         patch -= 0.5 * dt * 3.5 * T / MASS
         P_n, P_t = P_n + dt * F, P_t + dt * T
@@ -158,17 +160,17 @@ def damped(e, tan_theta, zeta, *, pulls, steps=40000):
 
 
 PRINTED = {  # in docs/liggghts_numbers.md and docs/upstream.md: f/mu at e = 0.9, 0.7, 0.5, 0.2
-    "ep/hertz": {0.9: 1.002, 0.7: 1.023, 0.5: 1.105, 0.2: 1.77},
+    "ep/hertz": dict.fromkeys((0.9, 0.7, 0.5, 0.2), 1.0),
     "hertz": {0.9: 1.004, 0.7: 1.047, 0.5: 1.168, 0.2: 1.73},
 }
 
 
 @pytest.mark.parametrize(("model", "e"), [(model, e) for model, row in PRINTED.items() for e in row])
-def test_the_dashpot_of_history_puts_friction_above_coulombs_limit(tmp_path, model, e):
+def test_the_limit_of_friction_holds_the_dashpot_of_history_beside_our_laws(tmp_path, model, e):
     """The patch slides all the time, so that Coulomb's friction is mu times the normal impulse.
 
-    `history` adds its dashpot to the spring as long as the spring alone is below the limit; LIGGGHTS's own `hertz` also
-    pulls at the end of the contact, which takes normal impulse away. 1e-2: 4000 steps in a contact, of first order.
+    LIGGGHTS's own `hertz` adds its dashpot to the spring as long as the spring alone is below the limit; it also pulls
+    at the end of the contact, which takes normal impulse away. 1e-2: 4000 steps in a contact, of first order.
     """
     tan_theta, log_e = 32 * MU, np.log(e)
     own = model == "hertz"
@@ -185,5 +187,5 @@ def test_the_dashpot_of_history_puts_friction_above_coulombs_limit(tmp_path, mod
     zeta = -log_e / np.hypot(log_e, np.pi) if own else float(viscous.damping_ratio(e))
     expected = damped(e, tan_theta, zeta, pulls=own)
     assert f == pytest.approx(expected, rel=1e-2)
-    assert f.min() > 1.001
+    assert f.min() > 1.001 if own else f.max() <= 1 + 1e-9
     assert f.mean() == pytest.approx(PRINTED[model][e], abs=5e-3)

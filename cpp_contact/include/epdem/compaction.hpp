@@ -34,6 +34,9 @@ inline constexpr double growth_reach = 0.25;
 /// Smallest gamma.
 inline constexpr double least_screening = 0.05;
 
+/// Other contacts screen a contact from this share of its own area on.
+inline constexpr double least_others = 1e-9;
+
 /// Largest growth of a sphere over its radius; lattices have 0.06 at a relative density of 0.95. A sphere that grows
 /// more, a soft one among hard ones, would touch spheres that no host has listed.
 inline constexpr double most_growth = 0.2;
@@ -158,11 +161,16 @@ EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies,
     const T free = max(T{}, 1.0 - 0.5 * sqrt(others) * curvature);
     return 1.0 - free * sqrt(free);
   };
-  const T others_i = max(T{}, c.i.area - own);
+  // the root has no finite slope at 0, and the sums of an only contact may differ from its own area by round-off
+  const auto beside = [&](T all) {
+    const T others = all - own;
+    return select(others > least_others * own, others, T{});
+  };
+  const T others_i = beside(c.i.area);
   T gamma = 1.0 - bodies.compliance_i * lost(others_i, c.curvature_i);
   T bulk = bodies.bulk_i * others_i * c.curvature_i;
   if constexpr (!wall) {
-    const T others_j = max(T{}, c.j.area - own);
+    const T others_j = beside(c.j.area);
     gamma = gamma - (1.0 - bodies.compliance_i) * lost(others_j, c.curvature_j);
     bulk = bulk + bodies.bulk_j * others_j * c.curvature_j;
   }
@@ -248,11 +256,14 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
     const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
     c.state = {v.now, v.extrapolated, c.state.shift + shift, raw, gamma, own, area, unstored};
   }
+  // a new contact that is looked at before a step has no growth of its own yet that it could take from its sums
+  if (const auto undented = repeats ? parts | !known : parts; any(undented)) {
+    const Dents<T>& d = c.dents;
+    c.dents = {select(undented, zero, d.cover_i), select(undented, zero, d.cover_j), select(undented, zero, d.volume_i),
+               select(undented, zero, d.volume_j), select(undented, zero, d.area)};
+  }
   if (any(parts)) {
     s.delta_max = select(parts, zero, s.delta_max);
-    const Dents<T>& d = c.dents;
-    c.dents = {select(parts, zero, d.cover_i), select(parts, zero, d.cover_j), select(parts, zero, d.volume_i),
-               select(parts, zero, d.volume_j), select(parts, zero, d.area)};
     const GrowthState<T>& g = c.state;
     c.state = {select(parts, zero, g.last), select(parts, zero, g.added),   select(parts, zero, g.shift),
                select(parts, zero, g.raw),  select(parts, zero, g.gamma),   select(parts, zero, g.own),

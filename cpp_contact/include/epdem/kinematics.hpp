@@ -74,4 +74,21 @@ EPDEM_INLINE Kinematics<T> at_wall(T radius, T overlap, const Vec<T>& d, const V
   return c;
 }
 
+/// From the point of a wall next to the centre of a sphere to the middle of the overlap, where the arm of the sphere
+/// ends: the velocity of a wall that turns is the velocity there. d: from the wall to the centre.
+inline Vec<double> to_middle(double overlap, const Vec<double>& d) noexcept {
+  const double distance = length(d);
+  return distance > 0.0 ? (-0.5 * overlap / distance) * d : Vec<double>{};
+}
+
+/// Spin [rad/s] of a rigid triangle from two of its edges and their rates.
+inline Vec<double> spin_of_triangle(const Vec<double>& a, const Vec<double>& b, const Vec<double>& rate_a,
+                                    const Vec<double>& rate_b) noexcept {
+  const Vec<double> area = cross(a, b);
+  const double square = dot(area, area);
+  const Vec<double> rate_of_area = (-1.0 / square) * (dot(area, rate_a) * cross(b, area) + dot(area, rate_b) * cross(area, a));
+  const double about_normal = dot(cross(area, a), rate_a) / (square * dot(a, a));
+  return (1.0 / square) * cross(area, rate_of_area) + about_normal * area;
+}
+
 }  // namespace epdem

@@ -110,14 +110,6 @@ EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& most, T* limit) no
   }
 }
 
-/// A vector, shortened so that `unit` times its length is at most `limit`.
-template <class T>
-EPDEM_INLINE Vec<T> limited(const Vec<T>& s, const T& unit, const T& limit) noexcept {
-  const T square = unit * unit * dot(s, s);
-  const auto over = square > limit * limit;
-  return any(over) ? select(over, limit / sqrt(square), T{} + 1.0) * s : s;
-}
-
 /// Friction [N] of stretches within their limits, with the dashpot inside `most`, the limit of friction.
 template <int N, bool Damped, class T>
 EPDEM_INLINE Vec<T> friction(const SlipState<N, T>& state, const Shear<T>& motion, const T& most,
@@ -172,19 +164,21 @@ EPDEM_INLINE SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pr
     const T z = min(square * (Rule::node[i] * Rule::node[i]), one);
     Vec<T> s = c[N - 1];
     for (int k = N - 2; k >= 0; --k) s = z * s + c[k];
-    out.after.stretch[i] = detail::limited((1.0 - z) * s + motion.slip, unit, limit[i]);
+    out.after.stretch[i] = limited((1.0 - z) * s + motion.slip, unit, limit[i]);
   }
   out.force = detail::friction<N, Damped>(out.after, motion, most, stiffness);
   return out;
 }
 
 /// Friction [N] where a contact is looked at and no step is taken: the springs as they are, which gives the bits of the
-/// last step's force again, and the dashpot.
+/// last step's force again, and the dashpot. A load that holds another dashpot than that of the step limits it anew; the
+/// rounding of a sum of springs does not.
 template <int N, bool Damped, class T>
 EPDEM_INLINE Vec<T> present_friction(const SlipState<N, T>& state, const T& load, const Shear<T>& motion,
                                      const T& stiffness, const T& mu) noexcept {
   const auto holds = min(load, state.radius) > 0.0;
-  return detail::friction<N, Damped>(state, motion, select(holds, mu * load, T{}), stiffness);
+  const T most = select(holds, mu * load, T{});
+  return limited(detail::friction<N, Damped>(state, motion, most, stiffness), T{} + (1.0 - 1e-12), most);
 }
 
 }  // namespace epdem

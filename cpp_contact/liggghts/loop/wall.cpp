@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "epdem/kinematics.hpp"
+#include "triangles.hpp"
+
 #ifdef EPDEM_BUILT_FOR
 
 namespace epdem::liggghts::loop {
@@ -90,6 +93,22 @@ void WallLoop::scatter() {
     if (plan_->adds_friction)
       plan_->tally->add_friction(true, b.friction_work.a[k], b.spring_energy.a[k], {i, i, atom->nlocal});
   }
+}
+
+bool Wall::velocity_in_middle(const SurfacesIntersectData& s, const double* at_surface, LAMMPS_NS::TriMesh& mesh,
+                              int triangle, double* v) {
+  const auto velocities = mesh.prop().getElementProperty<LAMMPS_NS::MultiVectorContainer<double, 3, 3>>("v");
+  if (!velocities) return false;
+  double** const rate = velocities->begin()[triangle];
+  const double* const corner = Triangles::corners(mesh) + 9L * triangle;
+  const auto edge = [&](int k) { return vector_of(corner + 3 * k) - vector_of(corner); };
+  const auto edge_rate = [&](int k) { return vector_of(rate[k]) - vector_of(rate[0]); };
+  const Vec<double> spin = spin_of_triangle(edge(1), edge(2), edge_rate(1), edge_rate(2));
+  const Vec<double> more = cross(spin, to_middle(s.deltan, vector_of(s.delta)));
+  v[0] = at_surface[0] + more.x;
+  v[1] = at_surface[1] + more.y;
+  v[2] = at_surface[2] + more.z;
+  return true;
 }
 
 }  // namespace epdem::liggghts::loop

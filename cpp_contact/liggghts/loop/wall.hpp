@@ -84,6 +84,8 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
   void compute_force(LAMMPS_NS::FixWallGran* wall, SurfacesIntersectData& s, bool intersects, double* v_wall,
                      LAMMPS_NS::FixMeshSurface* mesh = nullptr, int at = 0, LAMMPS_NS::TriMesh* triangles = nullptr,
                      int triangle = 0) override {
+    double v_middle[3];
+    if (triangles && intersects && velocity_in_middle(s, v_wall, *triangles, triangle, v_middle)) v_wall = v_middle;
     if (loop_.is_open() && intersects)
       loop_.note(s, v_wall, mesh, triangle);
     else
@@ -91,6 +93,10 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
   }
 
  private:
+  /// LIGGGHTS takes the velocity of a mesh at its surface, but the arm of a sphere ends in the middle of the overlap.
+  static bool velocity_in_middle(const SurfacesIntersectData& s, const double* at_surface, LAMMPS_NS::TriMesh& mesh,
+                                 int triangle, double* v);
+
   WallLoop loop_;
 };
 

@@ -58,6 +58,21 @@ EPDEM_INLINE bool near_limit(const T& square, const T& limit) noexcept {
   return any(!(square <= 0.9 * limit * limit));
 }
 
+/// A vector, shortened so that `unit` times its length is at most `limit`.
+template <class T>
+EPDEM_INLINE Vec<T> limited(const Vec<T>& s, const T& unit, const T& limit) noexcept {
+  const T square = unit * unit * dot(s, s);
+  const auto over = square > limit * limit;
+  return any(over) ? select(over, limit / sqrt(square), T{} + 1.0) * s : s;
+}
+
+/// Friction [N] of a spring within the limit `most` and a dashpot [N s/m] beside it, inside the same limit.
+template <class T>
+EPDEM_INLINE Vec<T> with_dashpot(const Vec<T>& spring, const T& damping, const Vec<T>& velocity,
+                                 const T& most) noexcept {
+  return limited(spring - damping * velocity, T{} + 1.0, most);
+}
+
 /// tangential off.
 struct NoFriction {
   static constexpr const char* name = "off";
