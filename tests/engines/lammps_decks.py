@@ -105,7 +105,7 @@ def run(text, folder, *, ranks=1):
     code, out = lammps(text, folder, ranks=ranks)
     assert code == 0 and "ERROR" not in out and "WARNING" not in out, out[-3000:]
     end = folder / "end.txt"
-    rows = np.loadtxt(end, skiprows=9)[:, 1:] if end.exists() else np.empty(0)
+    rows = np.loadtxt(end, skiprows=9, ndmin=2)[:, 1:] if end.exists() else np.empty(0)
     return out, rows
 
 

@@ -102,3 +102,9 @@ def alone(n, aside=30.0):
     v = np.zeros((3 * n, 3))
     v[n : 2 * n, 1] = v[2 * n :, 2] = -np.geomspace(0.05, 20, n)
     return np.concatenate([a, b, c]), radius, v
+
+
+def overlapping(apart=1.93):
+    """Places, radii and velocities of a pair that overlaps beyond yield through the faces x = -4 and 4 and turns."""
+    x = np.array([[4.0 - 0.48 * apart, 0.1, 0.2], [-4.0 + 0.52 * apart, 0.13, 0.11]])
+    return x, np.array([1.0, 1.1]), np.array([[1.5, 0.9, -0.4], [-1.2, -1.1, 0.7]])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, THORNTON, bed, run, spheres
 from plugin_decks import DUMP as FRAMES
-from plugin_decks import Bodies, contact, good, head, materials, per_pair
+from plugin_decks import Bodies, E, contact, good, head, materials, per_pair
 
 MU, E_N = 0.3, 0.6
 ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("lammps", marks=pytest.mark.lammps)]
@@ -17,25 +17,26 @@ def lammps_bed(runs, dt, folder, friction):
     law = f"1 1 {THORNTON} tangential {friction} {MU} restitution {E_N}"
     deck = bed([law]).replace("timestep 2e-6", f"timestep {dt!r}").replace("0.04", "0.01")
     table = "compute rows all pair/local dx dy dz p7 p8 p9\n"
-    table += "dump rows all local 100000 rows.txt c_rows[*]\ndump_modify rows format float %.17g\nrun 0\n"
+    table += "dump rows all local 100000 rows.txt c_rows[*]\ndump_modify rows format float %.17g first yes\nrun 0\n"
     _, end = run(deck + runs + DUMP + table, folder)
     return end[:, 4:], np.loadtxt(folder / "rows.txt", skiprows=9)
 
 
 def liggghts_bed(runs, dt, folder, friction):
-    """The same of 64 spheres, of which the radii are 2 mm."""
+    """The same of 64 spheres that fly into each other."""
     rng = np.random.default_rng(5)
-    places = 3.98e-3 * (np.array(list(np.ndindex(4, 4, 4))) - 1.5) + rng.uniform(-1e-6, 1e-6, (64, 3))
-    stirred = Bodies(np.full(64, 3), np.full(64, 2e-3), places, rng.uniform(-0.3, 0.3, (64, 3)))
+    places = 3.996e-3 * (np.array(list(np.ndindex(4, 4, 4))) - 1.5) + rng.uniform(-1e-6, 1e-6, (64, 3))
+    stirred = Bodies(rng.integers(1, 4, 64), np.full(64, 2e-3), places, rng.uniform(-0.5, 0.5, (64, 3)) - 50 * places)
     text = head(sort="0 0") + "read_data box.data\nneighbor 5e-4 bin\nneigh_modify delay 0\n"
-    text += materials("ep/thornton", friction=MU).replace("5000000000.0", "100000000.0")
+    text += materials("ep/thornton", friction=MU).replace(" ".join(map(repr, E.tolist())), "1e8 2e8 5e7")
     text += per_pair("coefficientRestitution", E_N)
     text += contact("ep/thornton", tangential=friction.replace("partial", "ep/partial"), settings="viscous on")
-    text += f"timestep {dt!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\n{FRAMES.format(every=1)}"
-    table = "compute rows all pair/gran/local pos force\ndump rows all local 1 rows.txt "
-    table += " ".join(f"c_rows[{k}]" for k in range(1, 10)) + "\nrun 0\n"
-    text = text.replace(FRAMES.format(every=1), "")
-    done = good(folder, text + runs + FRAMES.format(every=1) + table, files={"box.data": stirred.data([(-0.02, 0.02)] * 3)})
+    every = round(TIME / dt)
+    text += f"timestep {dt!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\n{FRAMES.format(every=every)}"
+    text += f"compute rows all pair/gran/local pos force\ndump rows all local {every} rows.txt "
+    text += " ".join(f"c_rows[{k}]" for k in range(1, 10)) + "\n"
+    text += f'dump_modify rows format "{" ".join(["%.17g"] * 9)}"\n{runs}'
+    done = good(folder, text, files={"box.data": stirred.data([(-0.02, 0.02)] * 3)})
     frame = (folder / "rows.txt").read_text().split("ITEM: ENTRIES")[-1].split("\n", 1)[1]
     rows = np.array([line.split() for line in frame.splitlines()], float)
     return done.last[:, 4:], np.column_stack([rows[:, :3] - rows[:, 3:6], rows[:, 6:]])
@@ -72,7 +73,8 @@ def test_a_sphere_that_touches_a_wall_and_slides_before_the_first_step_has_coulo
         deck += f"velocity all set {speed} 0 0\nfix motion all nve/sphere\ntimestep 1e-7\nrun 3000\n"
         v = run(deck + DUMP, tmp_path)[1][0, 4:7]
     else:
-        body = Bodies(np.array([3]), np.array([R]), np.array([[0, 0, R - overlap]]), np.array([[speed, 0, 0.0]]))
+        places = np.array([[0, 0, R - overlap], [0.01, 0, 0.01], [-0.01, 0, 0.01]])  # LIGGGHTS needs all three types
+        body = Bodies(np.array([3, 2, 1]), np.full(3, R), places, np.array([[speed, 0, 0]] + [[0.0] * 3] * 2))
         text = head() + "read_data box.data\nneighbor 5e-4 bin\n" + materials("ep/hertz", friction=MU)
         text += per_pair("coefficientRestitution", E_N)
         text += contact("ep/hertz", wall="primitive", settings="viscous on")

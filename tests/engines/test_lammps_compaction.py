@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from lammps_decks import lammps, needs_lammps, run
-from plugin_compaction import NU, E, Y, alone, data
+from plugin_compaction import NU, E, Y, alone, data, overlapping
 from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, MOVES, RADII, assert_second_order
 from test_plugin_compaction import cluster as cluster_of_liggghts
 
@@ -86,6 +86,23 @@ def test_contacts_alone_keep_every_bit(ranks, tmp_path):
     ]
     assert np.array_equal(*ends)
     assert (ends[0][-1][1::2, 6] > 0).any() and (ends[0][-1][24:, 6] > 0).any()  # some yielded
+
+
+@pytest.mark.parametrize("face", ["f", "p"])
+def test_a_pair_that_overlaps_at_the_start_keeps_its_law_through_a_periodic_face_too(face, tmp_path):
+    """No growth by its own dent in the first step, and none by what its two copies differ in."""
+    x, radius, v = overlapping()
+    if face == "f":
+        x[0, 0] -= 8.0
+    found = []
+    for law in (LAW, ON):
+        text = deck(law, "run 60\n", 2e-4, columns="fx fy fz vx vy vz").replace(
+            "boundary f f f", f"boundary {face} f f"
+        )
+        half = 4.0 if face == "p" else 8.0
+        found.append(frames(tmp_path / law.split()[-1], text, data(x, radius, v, 2000.0, half=half)))
+    assert found[0][5, 0, 0] != 0
+    assert (np.abs(found[1] - found[0]).max(axis=(0, 1)) <= 1e-12 * np.abs(found[0]).max(axis=(0, 1))).all()
 
 
 @pytest.mark.parametrize("steps", [7, 200])

@@ -138,3 +138,23 @@ def test_a_restart_file_names_models_by_their_ids_and_a_former_one_is_refused(tm
     errors = [line for line in out.splitlines() if line.startswith("ERROR")]
     assert code != 0 and len(errors) == 1
     assert "pair_style ep: the restart file comes from a former version of epdem; run its deck again" in errors[0]
+
+
+WALL_LATER = {
+    "its ID": ("fix wall", "", ""),
+    "another ID": ("fix floor", "", "holds contacts of walls with the IDs wall, and none of a wall with this ID"),
+    "a run before": ("fix wall", "run 0\n", "its contacts of the restart file ended with the first run"),
+    "a new wall later": ("fix floor", "run 0\n", ""),
+}
+
+
+@pytest.mark.parametrize("what", WALL_LATER)
+def test_a_wall_that_would_lose_its_dents_after_a_restart_is_refused(what, tmp_path):
+    fix, before, wrong = WALL_LATER[what]
+    head, wall = moving_wall("moved")
+    code, out = lammps(
+        f"{head}{wall}run 10\nwrite_restart here\n{AGAIN}fix motion all nve/sphere\n{before}"
+        f"{wall.replace('fix motion all nve/sphere', '').replace('fix wall', fix).replace('f_wall', 'f_' + fix[4:])}run 10\n",
+        tmp_path,
+    )
+    assert (code != 0) == bool(wrong) and wrong in out, out[-2000:]

@@ -141,8 +141,9 @@ inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const ty
   using namespace adhesive;
   const T zero{};
   const auto stood = before.root > 0.0;
-  const auto dented = (before.dent > 0.0) & (before.dent <= before.delta_max) & (before.delta_max < no_overlap) &
-                      (before.R_open >= R_star) & (before.R_open < no_overlap);  // else the memory of another law
+  // else the memory of another law; the dent of a contact that its attraction makes yield is above its overlap
+  const auto dented = (before.dent > 0.0) & (before.dent < no_overlap) & (before.delta_max < no_overlap) &
+                      (before.R_open >= R_star) & (before.R_open < no_overlap);
   T R = select(dented, before.R_open, R_star), dent = select(dented, before.dent, zero), own = delta - dent;
   const auto forms = (before.root <= 0.0) & (delta > 0.0) & (own > 0.0);
   T root = any(stood | forms) ? refreshed(before.root, law.c * R) : before.root;

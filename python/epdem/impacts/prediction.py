@@ -70,9 +70,6 @@ def predict(experiment: Experiment) -> Prediction:
     x, law = experiment, experiment.theory()
     pair: dict[str, Any] = {"m_star": x.m_star, "speed": x.speed}
     impact = law.impact(**pair, restitution=x.viscous_restitution)
-    barely, observed = 1.001 * float(law.sticking_speed(m_star=x.m_star)), np.nan
-    if barely > 0:
-        observed = 1.5 * float(law.impact(m_star=x.m_star, speed=barely).contact_time)
     first_yield = {
         b.material: law.first_yield_speed(b.yield_stress, m_star=x.m_star)
         for b in (x.body, x.target)
@@ -96,7 +93,7 @@ def predict(experiment: Experiment) -> Prediction:
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(strain, x.speed)),
         wave_share=waves,
-        observation_time=observed,
+        observation_time=law.observation_time(**pair),
     )
 
 

@@ -118,20 +118,33 @@ def _time(m: Numbers, path: Path, above: Numbers) -> Numbers:
     return np.sum(w * np.abs(slope(t)) * np.sqrt(0.5 * m / np.maximum(left, np.finfo(float).tiny)), axis=0)
 
 
-def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numbers:
-    """Time from touch to parting [s]; inf if the bodies stick. Arguments as of `impact`; to 1e-10."""
-    m, v = number("m_star", m_star), number("speed", speed)
-    W = 0.5 * m * v * v
-    top = law.radius_of_work(W)
+def _loading_time(law: AdhesiveCurve, m: Numbers, top: Numbers) -> Numbers:
+    """Time from touch to the largest contact radius `top` [s]."""
     elastic = np.clip(law.yield_radius, law.touch_radius, np.maximum(top, law.touch_radius))
     above, time = np.zeros(np.shape(top)), np.zeros(np.shape(top))
     if np.any(np.isfinite(law.yield_radius)):
         time = _time(m, law.plastic_path(elastic, np.maximum(top, elastic)), above)
         above = law.work(top) - law.work(elastic)
-    time = time + _time(m, law.elastic_path(law.touch_radius, elastic), above)
+    return time + _time(m, law.elastic_path(law.touch_radius, elastic), above)
+
+
+def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numbers:
+    """Time from touch to parting [s]; inf if the bodies stick. Arguments as of `impact`; to 1e-10."""
+    m, v = number("m_star", m_star), number("speed", speed)
+    top = law.radius_of_work(0.5 * m * v * v)
     branch, _ = law.branch(top)
     back = _time(m, branch.elastic_path(branch.fold_radius, top), np.zeros(np.shape(top)))
-    return np.where(e_n(law, m_star=m, speed=v) > 0, time + back, np.inf)
+    return np.where(e_n(law, m_star=m, speed=v) > 0, _loading_time(law, m, top) + back, np.inf)
+
+
+def observation_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> float:
+    """Time [s] for which impacts at `speed` [m/s] that stick are observed, beyond their largest overlap; NaN: none."""
+    m, v = number("m_star", m_star), number("speed", speed)
+    stick = sticking_speed(law, m_star=m)
+    if not stick > 0:
+        return float("nan")
+    loading = _loading_time(law, m, law.radius_of_work(0.5 * m * v * v))[v <= stick]
+    return 1.5 * float(np.max([contact_time(law, m_star=m, speed=1.001 * stick), *loading]))
 
 
 def impact(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Impact:

@@ -21,6 +21,7 @@ class JKR(AdhesiveCurve, Law):
     lost_work = adhesion.lost_work
     yield_speed = adhesion.yield_speed
     sticking_speed = adhesion.sticking_speed
+    observation_time = adhesion.observation_time
 
     def has_yielded(self, impact: Impact) -> bool:
         return bool(impact.radius_max.max() > max(float(self.touch_radius), float(self.yield_radius)))

@@ -49,6 +49,10 @@ class Law(ABC):
     def sticking_speed(self, *, m_star: Numbers) -> Numbers:
         """Speed [m/s] up to which bodies stick; 0 without adhesion."""
 
+    def observation_time(self, *, m_star: Numbers, speed: Numbers) -> float:
+        """Time [s] for which impacts at `speed` [m/s] that stick are observed; NaN without adhesion."""
+        return float("nan")
+
     def caveats(self, *, m_star: Numbers, speed: Array) -> list[str]:
         """Sentences on impacts at `speed`, shape (n,), that are beyond what the law is for."""
         return []
