@@ -152,9 +152,7 @@ WALL_LATER = {
 def test_a_wall_that_would_lose_its_dents_after_a_restart_is_refused(what, tmp_path):
     fix, before, wrong = WALL_LATER[what]
     head, wall = moving_wall("moved")
-    code, out = lammps(
-        f"{head}{wall}run 10\nwrite_restart here\n{AGAIN}fix motion all nve/sphere\n{before}"
-        f"{wall.replace('fix motion all nve/sphere', '').replace('fix wall', fix).replace('f_wall', 'f_' + fix[4:])}run 10\n",
-        tmp_path,
-    )
+    again = wall.replace("fix motion all nve/sphere", "").replace("fix wall", fix).replace("f_wall", f"f_{fix[4:]}")
+    deck = f"{head}{wall}run 10\nwrite_restart here\n{AGAIN}fix motion all nve/sphere\n{before}{again}run 10\n"
+    code, out = lammps(deck, tmp_path)
     assert (code != 0) == bool(wrong) and wrong in out, out[-2000:]
