@@ -112,7 +112,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   Layout layout_;
   std::vector<std::string> walls_;  // of claim_wall
   bool has_run_ = false;            // since the restart file was read
-  std::vector<double> identity_;  // of the models whose histories these are: their ids, numbers of a contact
+  std::vector<double> identity_;    // of the models whose histories these are: their ids, numbers of a contact
   double evaluations_ = 0.0;
   double strain_[2] = {};
   static constexpr int dent_sums = 3;

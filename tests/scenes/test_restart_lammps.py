@@ -61,8 +61,9 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
     whole = tables.particles(Frames(ended, tmp_path, tables.kinds(ended))), tables.rows(ended, out)
     assert (whole[1]["lid_force_z"] > 0.1).any()
     steps = restart_steps(tmp_path)[:-1]
-    at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")}
-    assert len(steps) > 30 and at_ends <= {*steps}
+    # a phase that its condition ends between two restart files has none at its end
+    at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")} & {*steps}
+    assert len(steps) > 30 and len(at_ends) >= 3
     for step in sorted({*steps[3::9]} | at_ends):
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)

@@ -86,7 +86,8 @@ inline Vec<double> spin_of_triangle(const Vec<double>& a, const Vec<double>& b, 
                                     const Vec<double>& rate_b) noexcept {
   const Vec<double> area = cross(a, b);
   const double square = dot(area, area);
-  const Vec<double> rate_of_area = (-1.0 / square) * (dot(area, rate_a) * cross(b, area) + dot(area, rate_b) * cross(area, a));
+  const Vec<double> rate_of_area =
+      (-1.0 / square) * (dot(area, rate_a) * cross(b, area) + dot(area, rate_b) * cross(area, a));
   const double about_normal = dot(cross(area, a), rate_a) / (square * dot(a, a));
   return (1.0 / square) * cross(area, rate_of_area) + about_normal * area;
 }

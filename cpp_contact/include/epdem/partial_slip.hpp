@@ -171,8 +171,8 @@ EPDEM_INLINE SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pr
 }
 
 /// Friction [N] where a contact is looked at and no step is taken: the springs as they are, which gives the bits of the
-/// last step's force again, and the dashpot. A load that holds another dashpot than that of the step limits it anew; the
-/// rounding of a sum of springs does not.
+/// last step's force again, and the dashpot. A load that holds another dashpot than that of the step limits it anew;
+/// the rounding of a sum of springs does not.
 template <int N, bool Damped, class T>
 EPDEM_INLINE Vec<T> present_friction(const SlipState<N, T>& state, const T& load, const Shear<T>& motion,
                                      const T& stiffness, const T& mu) noexcept {
