@@ -40,14 +40,15 @@ def planned(*wanted: dict, **output: object):
 def spheres(step: int, places: np.ndarray, radius: float = 1e-3, kind: int = 1) -> pd.DataFrame:
     """A frame of spheres of 2 mg."""
     table = pd.DataFrame(places, columns=["x", "y", "z"])
-    return table.assign(step=step, id=np.arange(1, len(places) + 1), type=kind, radius=radius, mass=2e-6)
+    still = dict.fromkeys(("vx", "vy", "vz"), 0.0)
+    return table.assign(step=step, id=np.arange(1, len(places) + 1), type=kind, radius=radius, mass=2e-6, **still)
 
 
 def curve(m: dict, *frames: pd.DataFrame, rows: pd.DataFrame | None = None) -> list[float]:
     """The values of a measure over frames."""
     p = planned(m | {"name": "value"})
     table = pd.concat(frames, ignore_index=True)
-    rows = pd.DataFrame({"step": table["step"].unique()}) if rows is None else rows
+    rows = pd.DataFrame({"step": table["step"].unique(), "particles": 1}) if rows is None else rows
     return measures.curves(p, {"particles": table, "rows": rows})["value"].to_list()
 
 
@@ -63,13 +64,70 @@ def test_spheres_are_counted_and_weighed_where_their_centres_are():
 def test_mass_flows_through_a_plane_in_its_direction():
     heights = [[3e-3, 3e-3, 5e-3], [1e-3, 3e-3, 5e-3], [1e-3, 1e-3, 5e-3]]
     frames = [spheres(100 * n, np.array([[0, 0, z] for z in row])) for n, row in enumerate(heights)]
-    frames.append(spheres(300, np.array([[0, 0, 1e-3], [0, 0, 1e-3]])))  # the third has left the room
+    frames[2].loc[2, "vz"] = -2.0  # m/s: 4 mm to the next frame, and the third has left the room there
+    frames.append(spheres(300, np.array([[0, 0, 1e-3], [0, 0, 1e-3]])))
     late = spheres(300, np.array([[0, 0, 1e-3]])).assign(id=9)  # and one has come beyond the plane
     rate = 2e-6 / (100 * 2e-5)
     down = curve({"kind": "flow", "direction": "-z", "at": "2 mm"}, *frames, late)
     assert down == pytest.approx([0.0, rate, rate, rate])
     up = curve({"kind": "flow", "direction": "+z", "at": "2 mm"}, *frames[:3])
     assert up == pytest.approx([0.0, -rate, -rate])
+
+
+@pytest.mark.parametrize(
+    ("direction", "speed", "flows"), [("-z", -2.0, 1), ("-z", 2.0, 0), ("-x", -2.0, 0), ("+z", 2.0, 0)]
+)
+def test_a_sphere_that_leaves_has_passed_a_plane_only_if_its_motion_carries_it_through(direction, speed, flows):
+    here, gone = spheres(0, np.array([[5e-3, 0, 5e-3]])).assign(vz=speed), spheres(100, np.zeros((0, 3)))
+    rows = pd.DataFrame({"step": [0, 100], "particles": [1, 0]})
+    p = planned({"kind": "flow", "direction": direction, "at": "2 mm", "name": "value"})
+    at = next(n for n in p.frame_steps(p.frames) if n > 0)
+    rows["step"] = [0, at]
+    found = measures.curves(p, {"particles": pd.concat([here, gone]), "rows": rows})
+    seconds = float(p.time_at(np.array([at]))[0])
+    fast = abs(speed) * seconds > 3e-3 or speed > 0  # the frame after
+    assert found["step"].to_list() == [0, at]
+    assert found["value"].iloc[-1] == pytest.approx(2e-6 / seconds * flows * fast)
+
+
+def test_a_sphere_passes_a_plane_of_a_periodic_room_in_each_image():
+    """One that goes by 0.4 of the period in each of ten frames: four times."""
+    data = parts(measure=[{"kind": "flow", "direction": "+x", "at": "0 mm", "name": "value"}])
+    data["scene"] |= {"periodic": "x", "wall": [w for w in data["scene"]["wall"] if w.get("axis") != "x"]}
+    p = plan(parse(data))
+    period = p.scene.periods[0]
+    low = p.scene.room.limits[0]
+    frames = [spheres(100 * n, np.array([[low + (0.05 + 0.4 * n) % 1.0 * period, 0, 1e-3]])) for n in range(11)]
+    rows = pd.DataFrame({"step": np.arange(11) * 100, "particles": 1})
+    found = measures.curves(p, {"particles": pd.concat(frames), "rows": rows})
+    mass = float((found["value"].to_numpy()[1:] * np.diff(p.time_at(found["step"].to_numpy()))).sum())
+    assert mass == pytest.approx(4 * 2e-6)
+
+
+def test_an_emptied_room_has_no_mass_no_flow_and_no_centre():
+    wanted = [{"kind": "mass", "name": "held"}, {"kind": "center_of_mass", "name": "middle"}]
+    p = planned(*wanted)
+    steps = p.frame_steps(p.frames)
+    frames = [spheres(n, np.array([[0, 0, 1e-3]])) for n in steps[:-2]]
+    rows = pd.DataFrame({"step": steps, "particles": [1] * (len(steps) - 2) + [0, 0]})
+    found = measures.curves(p, {"particles": pd.concat(frames), "rows": rows})
+    assert found["step"].to_list() == steps
+    assert found["held"].to_list()[-3:] == [2e-6, 0.0, 0.0]
+    assert found["middle"].iloc[-3] == 1e-3 and found["middle"].tail(2).isna().all()
+
+
+@pytest.mark.parametrize("strays", [0, 6, 200])
+def test_spheres_that_have_rolled_away_do_not_change_the_angle_of_repose(strays):
+    """A cone of 25 degrees, filled evenly, and strays on the floor up to ten radii of its foot away."""
+    rng, slope, height = np.random.default_rng(2), math.tan(math.radians(25.0)), 0.1
+    z = height * (1 - rng.uniform(size=20_000) ** (1 / 3))
+    r = (height - z) / slope * np.sqrt(rng.uniform(size=z.size))
+    phi = rng.uniform(0, 2 * math.pi, z.size)
+    far, turn = rng.uniform(0.3, 2.0, strays), rng.uniform(0, 2 * math.pi, strays)
+    x, y = (np.append(r * f(phi), far * f(turn)) for f in (np.cos, np.sin))
+    places = np.stack([x, y, np.append(z, np.zeros(strays))], axis=1)
+    (found,) = curve({"kind": "repose"}, spheres(0, places, 1e-6))
+    assert math.degrees(found) == pytest.approx(25.0, abs=0.7)
 
 
 def test_height_and_centre_of_mass_are_those_of_the_masses():
@@ -248,7 +306,7 @@ TILT = {"name": "tilt", "kind": "force", "wall": "floor"}
 
 def test_a_force_has_a_value_in_every_row_and_its_peak_counts():
     """The largest force lies between two frames: 125.9 N in one row of five, 0 in both frames."""
-    rows = pd.DataFrame({"step": [0, 10, 20, 30, 40], "time": np.arange(5.0), "floor_force_x": 0.0})
+    rows = pd.DataFrame({"step": [0, 10, 20, 30, 40], "time": np.arange(5.0), "particles": 1, "floor_force_x": 0.0})
     rows = rows.assign(floor_force_y=[0, 0, 3.0, 0, 0], floor_force_z=[0, 0, 125.9, 4.0, 0])
     p = planned(LIFT, TILT, {"name": "all", "kind": "count"})
     frames = pd.concat([spheres(step, np.zeros((1, 3))) for step in (0, 40)], ignore_index=True)

@@ -73,24 +73,45 @@ def test_the_mass_flow_is_the_slope_of_what_is_out_and_beverloo_s_that_of_the_bu
     n, step = 200, np.arange(0, p.steps + 1, p.frames)
     opened = p.phases[0].end
     low, high = step[step <= opened].max(), p.steps
-    height = 0.019 * (np.arange(n) + 0.5) / n
+    (check,) = p.scene.check
+    at, outlet = check.at, check.outlet
+    height = at + (0.019 - at) * (np.arange(n) + 0.5) / n  # in the cone, too
     leaves = low + (high - low) * (np.arange(n) + 0.5) / n
-    spheres = [{"z": np.where(step > t, -0.02, z)} for z, t in zip(height, leaves, strict=True)]
+    spheres = [{"z": np.where(step > t, at - 0.002, z)} for z, t in zip(height, leaves, strict=True)]
     found = verdict(p, "mass_flow", particles=frames(p, spheres))
     flow = n * 1e-5 / ((high - low) * p.time_step)
     # the frames cut the flow into 12 pieces
     assert found["value"] == pytest.approx(flow, rel=0.03)
     # bulk density: even, up to the top of 95 % of the beads
-    top = np.quantile(height, 0.95)
-    bulk = 1e-5 * n * (0.5 * top / 0.019) / (math.pi / 4 * 0.02**2 * 0.5 * top)
+    ends = at + np.array([0.2, 0.7]) * (np.quantile(height, 0.95) - at)
+    z = np.linspace(*ends, 20_001)
+    radius = np.where(z < 0, 0.01 + (0.01 - outlet / 2) * z / -at, 0.01)
+    bulk = 1e-5 * n * 0.5 * 0.95 / np.trapezoid(math.pi * radius**2, z)
     assert found["expected"] == pytest.approx(0.58 * bulk * math.sqrt(9.81) * (0.012 - 1.4 * 0.002) ** 2.5, rel=0.02)
     assert found["passed"] == (abs(found["value"] / found["expected"] - 1) <= 0.2)
 
 
 def test_a_hopper_that_does_not_flow_fails_its_check():
-    p = planned("hopper")
-    found = verdict(p, "mass_flow", particles=frames(p, [{"z": 0.001 * k} for k in range(12)]))
-    assert math.isnan(found["value"]) and not found["passed"]
+    p = planned("hopper", count=30, outlet="12 mm")
+    table = frames(p, [{"z": 0.0005 * k} for k in range(30)])
+    found = verdict(p, "mass_flow", particles=table)
+    assert math.isnan(found["value"]) and found["expected"] > 0 and not found["passed"]
+    assert checks.flow_warnings(p, {"particles": table}) == ["no sphere passed the outlet"]
+
+
+@pytest.mark.parametrize(
+    ("beds", "outlet", "why"),
+    [
+        ([{"z": 0.0005 * k, "vz": -0.5} for k in range(30)], "12 mm", "the bed still falls as the outlet opens"),
+        ([{"z": 0.0005 * k} for k in range(30)], "2.7 mm", "is below 1.4 diameters of the spheres"),
+        ([{"z": 0.0005 * k} for k in range(5)], "12 mm", "5 spheres above the outlet as it opens are no bed"),
+    ],
+)
+def test_a_mass_flow_without_an_expected_rate_is_not_checked(beds, outlet, why):
+    p = planned("hopper", count=len(beds), outlet=outlet)
+    tables = {"particles": frames(p, beds), "rows": rows(p)}
+    assert "mass_flow" not in checks.checks(p, tables)["key"].to_list()
+    assert why in checks.flow_warnings(p, tables)[0]
 
 
 @pytest.mark.parametrize(("load", "passed"), [(1.0, True), (1.019, True), (0.97, False), (0.0, False)])

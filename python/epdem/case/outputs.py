@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Columns of the rows, checks and the key figure that a scene of parts names, beside those that every scene has. SI."""
 
+import math
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -63,12 +64,24 @@ class BedRebound(Frozen):
 
 
 class MassFlow(Frozen):
-    """The mass flow through a round outlet at the height `at` of a round bin agrees with Beverloo's formula."""
+    """The mass flow through a round outlet at the height `at` of a round bin agrees with Beverloo's formula.
+
+    cone: height at which a cone that begins at the outlet reaches the bin; without it the bin begins at the outlet.
+    """
 
     kind: Literal["mass_flow"]
     outlet: Length
     bin: Length
     at: Place
+    cone: Place | None = None
+
+    def volume(self, height: float) -> float:
+        """Volume [m^3] of the vessel from the outlet up to a height [m]."""
+        above = max(height - self.at, 0.0)
+        cone = 0.0 if self.cone is None else self.cone - self.at
+        r, R, part = self.outlet / 2, self.bin / 2, min(above, cone)
+        end = r + (R - r) * part / cone if cone else r
+        return math.pi * (part / 3 * (r * r + r * end + end * end) + R * R * (above - part))
 
 
 class ReboundSpeed(Frozen):

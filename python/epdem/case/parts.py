@@ -62,7 +62,7 @@ class Amount(_OfSpheres):
 class Flow(_Measure):
     """Mass per time [kg/s] through a plane in a direction, between frames.
 
-    A sphere that leaves the room has passed the plane.
+    A sphere that leaves the room passes the plane if its last place and velocity carry it through.
     """
 
     kind: Literal["flow"]

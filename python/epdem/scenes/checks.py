@@ -11,7 +11,9 @@ from ..base.tables import Column
 from ..case.outputs import BedRebound, FloorLoad, MassFlow, ReboundSpeed, Unloading
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
+from ..laws.strengths import ADHESION
 from .columns import last_frame
+from .model import pair_law
 from .plan import ScenePlan
 from .timestep import impact
 
@@ -118,6 +120,7 @@ COLUMNS = ("key", "check", "value", "expected", "error", "tolerance", "unit", "p
 AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed at rest
 MOST_PRESSED = 5.0  # of a wall, in weights of the bed: up to a tolerance of 10 % the sum of forces tells the weight
 MANY = 20  # frames from which on motion is followed
+LEAST_BED = 20  # spheres that have a bulk density
 
 
 def _row(key: str, value: float, expected: float, tolerance: float, *, passed: bool | None = None, **words: int) -> Row:
@@ -187,42 +190,74 @@ def works_of_wall(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[f
 
 @dataclass(frozen=True)
 class Discharge:
-    """Flow through an outlet: mass rate [kg/s], bulk density of the bin as it opens [kg/m^3], mean diameter [m] and
-    number of the spheres that came out meanwhile."""
+    """Flow through an outlet: mass rate [kg/s], bulk density of the bed as it opens [kg/m^3], mean diameter [m] and
+    number of the spheres that came out meanwhile; why no rate is expected, or nothing."""
 
     rate: float
     bulk: float
     diameter: float
     counted: int
+    unknown: str = ""
 
 
 def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[float, float] = (0.2, 0.6)) -> Discharge:
     """The slope of the mass below the outlet against time, while it is between these parts of the filling.
 
-    NaN where fewer than two frames lie between them. The bulk density is that from 0.2 to 0.7 of the bed's height.
+    NaN where fewer than two frames lie between them. The bulk density is that from 0.2 to 0.7 of the height of the bed
+    above the outlet.
     """
     steps = np.sort(spheres["step"].unique())
-    bed = spheres[spheres["step"] == steps[steps <= p.phases[0].end].max()]
+    bed = spheres[(spheres["step"] == steps[steps <= p.phases[0].end].max()) & (spheres["z"] > flow.at)]
+    if len(bed) < LEAST_BED:
+        return Discharge(np.nan, np.nan, np.nan, 0, f"{len(bed)} spheres above the outlet as it opens are no bed")
     below = spheres[spheres["z"] < flow.at].groupby("step")["mass"]
     out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
     during = (out > part[0] * bed["mass"].sum()) & (out < part[1] * bed["mass"].sum())
     count = below.count().reindex(steps, fill_value=0).to_numpy()[during]
-    top = np.quantile(bed["z"], 0.95)
-    inside = bed[(bed["z"] > 0.2 * top) & (bed["z"] < 0.7 * top)]
-    bulk = inside["mass"].sum() / (np.pi / 4 * flow.bin**2 * 0.5 * top)
-    diameter = 2 * float(bed["radius"].mean())
-    if count.size < 2:
-        return Discharge(np.nan, float(bulk), diameter, 0)
-    rate = np.polyfit(p.time_at(steps[during]), out[during], 1)[0]
-    return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]))
+    low, high = flow.at + np.array([0.2, 0.7]) * (np.quantile(bed["z"], 0.95) - flow.at)
+    inside = bed[(bed["z"] > low) & (bed["z"] < high)]
+    bulk = inside["mass"].sum() / (flow.volume(high) - flow.volume(low))
+    diameter, unknown = 2 * float(bed["radius"].mean()), ""
+    if kinetic(bed).sum() > AT_REST * (bed["mass"] * p.scene.gravity * bed["radius"]).sum():
+        unknown = "the bed still falls as the outlet opens; give a longer fill_time"
+    elif flow.outlet <= 1.4 * diameter:
+        unknown = f"the outlet of {flow.outlet:g} m is below 1.4 diameters of the spheres, where nothing flows"
+    rate = np.polyfit(p.time_at(steps[during]), out[during], 1)[0] if count.size > 1 else np.nan
+    return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]) if count.size else 0, unknown)
 
 
 def beverloo(discharge: Discharge, outlet: float, gravity: float) -> float:
-    """W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5 [kg/s] through an outlet D [m].
+    """W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5 [kg/s] through an outlet D [m]; NaN where no rate is expected.
 
     Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260; 1.4 stands for 1.2 to 1.6.
     """
+    if discharge.unknown:
+        return math.nan
     return float(0.58 * discharge.bulk * np.sqrt(gravity) * (outlet - 1.4 * discharge.diameter) ** 2.5)
+
+
+def flow_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
+    """A sentence for each mass flow without an expected rate, and for an outlet that lets no sphere through."""
+    found = []
+    for flow in (x for x in p.scene.check if isinstance(x, MassFlow) and "particles" in tables):
+        spheres = tables["particles"]
+        if unknown := discharge(p, flow, spheres).unknown:
+            found.append(f"the mass flow is not compared with Beverloo's formula: {unknown}")
+        if not (last_frame(spheres)["z"] < flow.at).any() and not p.scene.open_boundary:
+            found.append(f"no sphere passed the outlet{_bond_number(p)}")
+    return found
+
+
+def _bond_number(p: ScenePlan) -> str:
+    """The pull-off force of two spheres of the first filling over the weight of one, in words; without adhesion ""."""
+    if not p.model.adheres or not p.scene.gravity:
+        return ""
+    lead = p.scene.leading
+    radius, material = lead.radii()[0], lead.material
+    gamma = pair_law(p.case, material, material)[0].parameters[ADHESION]
+    weight = 4 / 3 * math.pi * radius**3 * p.case.materials[material].density * p.scene.gravity
+    bond = 0.75 * math.pi * gamma * radius / weight
+    return f": the Bond number of its spheres (pull-off force over weight) is {bond:.3g}"
 
 
 def single_rebound(case: SceneCase, s: ReboundSpeed) -> float:
@@ -286,7 +321,8 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 rows.append(_below("rebound_of_the_bed", *bed_rebound(p.case, tables["particles"])))
             case MassFlow() if many:
                 flow = discharge(p, check, tables["particles"])
-                rows.append(_row("mass_flow", flow.rate, beverloo(flow, check.outlet, p.scene.gravity), 0.2))
+                if not flow.unknown:
+                    rows.append(_row("mass_flow", flow.rate, beverloo(flow, check.outlet, p.scene.gravity), 0.2))
             case ReboundSpeed() if many and len(p.phases) == 1:
                 expected = single_rebound(p.case, check)
                 speed, count = rebounds(tables["particles"], check.speed, expected)

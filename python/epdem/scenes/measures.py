@@ -15,7 +15,8 @@ from .model import pair_law
 from .plan import ScenePlan
 
 LINES = 2**16  # through a region whose porosity is measured
-RINGS = 12  # of the surface of a bed
+RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out
+SURFACE = 0.95  # of the mass of a bed, nearest to its middle: beyond it single spheres have rolled away
 
 
 def refuse_measures(p: ScenePlan) -> None:
@@ -89,18 +90,26 @@ def _height(frame: pd.DataFrame, share: float) -> float:
 
 
 def _angle(m: Repose, frame: pd.DataFrame) -> float:
-    """Angle [rad] of a line through the highest spheres of rings, or of strips, of equal width."""
+    """Angle [rad] of a line through the highest spheres of rings, or of strips, of equal width.
+
+    They reach over `SURFACE` of the mass, for spheres that have rolled away are no surface. NaN with fewer than three
+    of them.
+    """
     if len(frame) < 2 * RINGS:
         return math.nan
     x, y = frame["x"] - m.center[0], frame["y"] - m.center[1]
     way = {"distance": np.hypot(x, y), "x": x, "y": y}[m.over].to_numpy()
-    top = (frame["z"] + frame["radius"]).to_numpy()
-    edges = np.linspace(way.min(), way.max() * (1 + 1e-12), RINGS + 1)
-    ring = np.clip(np.digitize(way, edges) - 1, 0, RINGS - 1)
-    there = np.unique(ring)
-    surface = np.array([top[ring == k].max() for k in there])
-    middle = 0.5 * (edges[there] + edges[there + 1])
-    return float(math.atan(abs(np.polyfit(middle, surface, 1)[0])))
+    top, mass = (frame["z"] + frame["radius"]).to_numpy(), frame["mass"].to_numpy()
+    order = np.argsort(way)
+    share = np.cumsum(mass[order]) / mass.sum()
+    outside = (0.0, SURFACE) if m.over == "distance" else (0.5 - SURFACE / 2, 0.5 + SURFACE / 2)
+    low, high = way[order][np.searchsorted(share, outside)]
+    ring = np.floor((way - low) / max(high - low, 1e-300) * RINGS)
+    highest = [np.flatnonzero(ring == k) for k in range(1, RINGS - 1)]
+    highest = [at[np.argmax(top[at])] for at in highest if at.size]
+    if len(highest) < 3:
+        return math.nan
+    return float(math.atan(abs(np.polyfit(way[highest], top[highest], 1)[0])))
 
 
 def _porosity(p: ScenePlan, m: Porosity, frame: pd.DataFrame) -> float:
@@ -135,18 +144,29 @@ def _porosity(p: ScenePlan, m: Porosity, frame: pd.DataFrame) -> float:
 
 
 def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> FloatArray:
-    """Mass that passes the plane between two frames over the time between them; 0 at the first."""
+    """Mass that passes the plane between two frames over the time between them; 0 at the first.
+
+    A sphere that leaves the room passes the plane if its last place, velocity and weight carry it through. Along a
+    periodic axis a sphere passes the plane in each image of the room.
+    """
     axis, sign = m.direction[1], 1.0 if m.direction[0] == "+" else -1.0
-    chosen = _chosen(p, m, spheres)
+    chosen, seconds = _chosen(p, m, spheres), np.diff(p.time_at(steps))
     mass = chosen.groupby("id")["mass"].first()
-    place = chosen.pivot_table(index="step", columns="id", values=axis).reindex(index=steps, columns=mass.index)
-    there, seen = place.notna().to_numpy(bool), place.notna().cummax().to_numpy(bool)
-    beyond = (sign * (place - m.at) > 0).to_numpy(bool) & there
-    passed = beyond | (seen & ~there)
-    new = np.diff(passed.astype(int), axis=0)
-    new[~seen[:-1] & seen[1:]] = 0  # a sphere that is inserted beyond the plane has not passed the plane
-    flow = (new * mass.to_numpy()).sum(axis=1) / np.diff(p.time_at(steps))
-    return np.concatenate([[0.0], flow])
+    place, speed = (
+        chosen.pivot_table(index="step", columns="id", values=name).reindex(index=steps, columns=mass.index).to_numpy()
+        for name in (axis, f"v{axis}")
+    )
+    period = p.scene.periods["xyz".index(axis)]
+    moved = np.diff(place, axis=0)
+    if period:
+        moved -= period * np.round(moved / period)
+    there = np.isfinite(place)
+    fall = 0.5 * p.scene.gravity * seconds[:, None] ** 2 if axis == "z" else 0.0
+    moved = np.where(there[:-1] & ~there[1:] & (not period), speed[:-1] * seconds[:, None] - fall, moved)
+    before = sign * (place[:-1] - m.at)
+    counted = [np.floor(x / period) if period else (x > 0).astype(float) for x in (before, before + sign * moved)]
+    new = np.where(np.isfinite(moved), counted[1] - counted[0], 0.0)
+    return np.concatenate([[0.0], (new * mass.to_numpy()).sum(axis=1) / seconds])
 
 
 def with_loads(p: ScenePlan, rows: pd.DataFrame) -> pd.DataFrame:
@@ -167,11 +187,19 @@ def curve(m: Measure, tables: dict[str, pd.DataFrame]) -> tuple[FloatArray, Floa
     return table["time"].to_numpy(float), table[m.name].to_numpy(float)
 
 
+def _frame_steps(p: ScenePlan, spheres: pd.DataFrame, rows: pd.DataFrame) -> np.ndarray:
+    """The steps of the frames, with those of a room that has emptied: the table of spheres has no row of them."""
+    planned = np.array(p.frame_steps(p.frames) if p.frames else [], dtype=int)
+    planned = planned[(planned > spheres["step"].min()) & (planned <= rows["step"].max())]
+    next_row = np.searchsorted(rows["step"], planned)
+    return np.union1d(spheres["step"].unique(), planned[rows["particles"].to_numpy()[next_row] == 0])
+
+
 def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame: step, time, a column for each measure but loads and histograms."""
     spheres = tables.get("particles", pd.DataFrame({"step": np.zeros(0, int)}))  # loads need no frames
-    steps = np.sort(spheres["step"].unique())
-    frames = dict(tuple(spheres.groupby("step")))
+    steps = _frame_steps(p, spheres, tables["rows"])
+    frames = dict.fromkeys(steps, spheres.head(0)) | dict(tuple(spheres.groupby("step")))
     table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
     for m in p.scene.measure:
         match m:
@@ -184,7 +212,9 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 table[m.name] = [_angle(m, _chosen(p, m, frames[step])) for step in steps]
             case CenterOfMass():
                 chosen = [_chosen(p, m, frames[step]) for step in steps]
-                table[m.name] = [float((c["mass"] * c[m.axis]).sum() / max(c["mass"].sum(), 1e-300)) for c in chosen]
+                table[m.name] = [
+                    float((c["mass"] * c[m.axis]).sum() / c["mass"].sum()) if len(c) else math.nan for c in chosen
+                ]
             case Flow():
                 table[m.name] = _flow(p, m, spheres, steps)
             case Porosity():

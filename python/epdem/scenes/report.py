@@ -10,7 +10,7 @@ import pandas as pd
 
 from ..base.terminal import Shown, frame_table, heads, warned
 from ..case.outputs import MassFlow, ReboundSpeed
-from ..case.parts import MEASURES, Histogram, Load
+from ..case.parts import MEASURES, Histogram, Load, Measure
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
@@ -49,8 +49,15 @@ def charts(outcome: SceneOutcome) -> list[Chart]:
 def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The measures against time."""
     found = [m for m in p.scene.measure if not isinstance(m, Histogram) and m.name not in p.scene.key_figure]
-    curves = {m.name: (MEASURES[m.kind].unit, *curve(m, tables)) for m in found}
+    curves = {m.name: _shown_curve(m, tables) for m in found}
     return _against_time(p, "scene_measures", "Measures against time", curves)
+
+
+def _shown_curve(m: Measure, tables: Tables) -> tuple[str, np.ndarray, np.ndarray]:
+    """(unit, times [s], values) of a measure for readers: angles in degrees."""
+    times, values = curve(m, tables)
+    unit = MEASURES[m.kind].unit
+    return ("deg", times, np.degrees(values)) if unit == "rad" else (unit, times, values)
 
 
 def rows(outcome: SceneOutcome) -> list[Chart]:
@@ -149,11 +156,13 @@ def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:
     below = spheres[spheres["z"] < flow.at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
     time, out = p.time_at(steps), below.to_numpy()
     rate = checks.beverloo(checks.discharge(p, flow, spheres), flow.outlet, p.scene.gravity)
-    total = float(spheres[spheres["step"] == steps[-1]]["mass"].sum())
-    begin = int(np.argmax(out > 0.2 * total))
-    ends = time[begin] + np.array([0.0, 0.4 * total / rate])
-    line = Series(f"Beverloo, {rate:.3g} kg/s", ends, out[begin] + rate * (ends - ends[0]), INK, "dash")
-    return [Panel(TIME, Axis("mass below the outlet", "kg"), [Series("scene", time, out, 0), line])]
+    series = [Series("scene", time, out, 0)]
+    if rate > 0.0:
+        total = float(spheres[spheres["step"] == steps[-1]]["mass"].sum())
+        begin = int(np.argmax(out > 0.2 * total))
+        ends = time[begin] + np.array([0.0, 0.4 * total / rate])
+        series.append(Series(f"Beverloo, {rate:.3g} kg/s", ends, out[begin] + rate * (ends - ends[0]), INK, "dash"))
+    return [Panel(TIME, Axis("mass below the outlet", "kg"), series)]
 
 
 def _pressure(p: ScenePlan, tables: Tables) -> np.ndarray:
@@ -336,11 +345,11 @@ def _measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
         if isinstance(m, Histogram):
             values = values_of(p, m, tables)
             kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
-            time = tables["measures"]["time"].iloc[-1]
+            time, unit = tables["measures"]["time"].iloc[-1], MEASURES[m.kind].unit
         else:
-            times, values = curve(m, tables)
+            unit, times, values = _shown_curve(m, tables)
             kind, value, time = m.kind, float(values[-1]), times[-1]
         known = values[np.isfinite(values)]
         limits = (known.min(), known.max()) if known.size else (math.nan, math.nan)
-        found.append((m.name, kind, time, value, *limits, MEASURES[m.kind].unit))
+        found.append((m.name, kind, time, value, *limits, unit))
     return pd.DataFrame(found, columns=["measure", "kind", "time [s]", "value", "smallest", "largest", "unit"])

@@ -20,7 +20,7 @@ from ..jobs.stage import Inputs, Tables, inputs, without_comments
 from . import checks, measures, pictures, results, stages
 from .plan import Resumed, SceneEngine, ScenePlan, plan
 from .timestep import leading_impact
-from .warnings import lost_spheres, measured_warnings, planned_warnings
+from .warnings import lost_spheres, measured_warnings, passed_walls, planned_warnings
 
 Progress = Callable[[int, int], None]  # (step, steps of the run)
 
@@ -136,7 +136,7 @@ def run(
         decks = {name: text for name, text in given.files.items() if "/" not in name}  # without modules
         found = results.SceneResults(text, old.attributes if old else about, tables, decks, named)
         results.write(folder / "results.h5", p, found, old)
-    warnings = [*notes, *measured_warnings(p, tables), *lost_spheres(p, tables)]
+    warnings = [*notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *passed_walls(p, tables)]
     return SceneOutcome(p, folder, found, seconds, old is not None, begin, warnings)
 
 

@@ -12,6 +12,7 @@ from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
 from . import filling, servo, stages
+from .checks import flow_warnings
 from .columns import STRAINS, bodies, reduced
 from .limits import dense_beds, depths, largest_density, overlaps
 from .meshes import FloatArray, sheet
@@ -78,8 +79,8 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
     ]
     pressing = stages.warnings(p, tables) if "stages" in tables else []
     effect = PRESSED if p.model.compaction else validity.OVERESTIMATED
-    forces = servo.not_reached(p, tables["rows"])
-    return [*validity.finite_strain(largest, where, effect), *no_void, *forces, *pressing] + [
+    others = [*servo.not_reached(p, tables["rows"]), *flow_warnings(p, tables)]
+    return [*validity.finite_strain(largest, where, effect), *no_void, *pressing, *others] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
         for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
@@ -218,3 +219,35 @@ def lost_spheres(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
             said += f", sphere {x.id} (last at ({x.x:.4g}, {x.y:.4g}, {x.z:.4g}) m with ({x.vx:.3g}, {x.vy:.3g}, "
             said += f"{x.vz:.3g}) m/s, step {x.step})"
     return [f"{said}; {ADVICE}"]
+
+
+def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
+    """A sentence for each plane of all phases through which spheres have passed: how many, and the largest overlap.
+
+    A sphere that is missing in the last frame has passed if its motion until the next frame carries it out of the room
+    through the plane alone.
+    """
+    if not p.frames:
+        return []
+    spheres, found = tables["particles"], []
+    first, last = (spheres.drop_duplicates("id", keep=keep).set_index("id") for keep in ("first", "last"))
+    seconds = (last["step"] < p.frame_steps(p.frames)[-1]) * p.frames * p.time_step
+    ends = last[[*"xyz"]].to_numpy() + seconds.to_numpy()[:, None] * last[["vx", "vy", "vz"]].to_numpy()
+    limits = np.array(p.scene.room.limits).reshape(3, 2)
+    outside = ((ends < limits[:, 0]) | (ends > limits[:, 1])) & (seconds.to_numpy()[:, None] > 0)
+    for wall in p.scene.planes:
+        k = "xyz".index(wall.axis)
+        beyond = (first.loc[last.index, wall.axis].to_numpy() - wall.at) * (ends[:, k] - wall.at) < 0
+        passed = int((beyond & ~np.delete(outside, k, axis=1).any(axis=1)).sum())
+        if not passed:
+            continue
+        said = f"{passed} of {len(last)} spheres have passed through wall {wall.name}"
+        contacts = tables.get("contacts", pd.DataFrame(columns=["wall"]))
+        if len(contacts := contacts[contacts["wall"] == wall.name]):
+            share = contacts["delta_max"].to_numpy() / bodies(p, contacts, spheres)[0]["radius"].to_numpy()
+            said += f", whose contacts overlap by up to {share.max():.2g} radii"
+        found.append(
+            f"{said}: a sphere whose centre reaches a wall is free behind it; reduce the load or the time step, "
+            "or give a higher modulus"
+        )
+    return found
