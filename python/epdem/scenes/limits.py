@@ -125,10 +125,10 @@ def overlaps(spheres: Sequence[Sphere], s: Parts) -> tuple[IntArray, IntArray, F
 
     If centres lie in other spheres, only the nearest neighbours are found: a table of one position has too many pairs.
     """
-    from scipy.spatial import cKDTree
-
     if len(spheres) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros(0)
+    from scipy.spatial import cKDTree  # slow to import
+
     low = np.array([s.room.x[0], s.room.y[0], 0.0])
     period = np.array(s.periods)
     positions = np.array([x.place for x in spheres])
