@@ -110,7 +110,7 @@ class Host(Engine[Any, Any]):
         Raises EngineError for a frame that is missing or not whole.
         """
         out, own = folder / self.launcher.OUT, self.tables
-        plan = plan.with_ends(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
+        plan = plan.with_ends(log.ends(out), log.not_reached(out), log.held(out)) if plan.ends_early else plan
         frames = Frames(plan, folder, own.kinds(plan), without)
         found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
         if plan.frames:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.rendering import number
+from ..case.walls import PlateWall
 from ..errors import CaseError
 from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
@@ -111,7 +112,9 @@ def impact_model(plan: Plan) -> Model:
 class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
-    formula: "" without a condition. void: formula of the height of the void in a pressed bed, which ends the run at 0;
+    formula: "" without a condition; limit: its value. falls: whether the condition is to be at most the limit. look:
+    steps between two looks, fewer as the limit comes nearer if `nears`. opposite: formula of the force on the wall
+    against a punch. stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends the run at 0;
     "": no bed is pressed.
     """
 
@@ -120,6 +123,17 @@ class StopCondition:
     formula: str
     condition: str
     void: str = ""
+    limit: float = 0.0
+    look: int = 0
+    every: int = 0
+    nears: bool = False
+    opposite: str = ""
+    stop: tuple[str, ...] = ()
+
+    @property
+    def steps(self) -> int:
+        """At most, of the rows."""
+        return self.rows * self.every
 
 
 def default_skin(p: ScenePlan) -> float:
@@ -147,15 +161,27 @@ def row_words(p: ScenePlan) -> Iterator[str]:
 def first_look(p: ScenePlan, run: PhaseSteps) -> int:
     """The steps of a phase before its condition is evaluated."""
     rows = math.ceil(run.case.condition_from / run.time_step / p.every)
-    return min(run.steps, p.every * max(1, rows))
+    return min(run.steps, p.every * rows)
 
 
-def stop_condition(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], str]) -> StopCondition | None:
+MISS = 2e-3  # of a limit, by which a force that comes near it may fall short of it
+BORNE = 0.05  # of the pressure of a stage, that the opposite wall bears at least
+LOOK = 100  # steps between two looks at a condition
+
+
+def stop_condition(
+    p: ScenePlan,
+    run: PhaseSteps,
+    place: Callable[[PressedBed], str],
+    force: Callable[[str, int], str],
+    stop: Sequence[str] = (),
+) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS: by its condition, or by a bed without void.
 
-    None: it does not. place: formula of the place of the plate that presses a bed.
+    None: it does not. place: formula of the height that a pressed bed has. force: word of a component of the force
+    on a wall at a step. stop: commands that bring the walls of the phase to rest.
     """
-    void = next((void_height(bed, place(bed)) for bed in p.pressed if bed.phase == run.name), "")
+    void = next((f"{place(bed)}-{number(bed.solid_height)}" for bed in p.pressed if bed.phase == run.name), "")
     until = run.case.condition
     if until is None:
         return StopCondition(0, run.steps // p.every, "", "", void) if void else None
@@ -165,13 +191,32 @@ def stop_condition(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], 
     elif until.count is not None:
         formula, sign = "atoms", "<="
     else:
-        load = f"f_load{1 + p.measured_walls.index(until.wall or '')}"
-        formula = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")"
-        sign = ">=" if until.force else "<="
-    return StopCondition(first, (run.steps - first) // p.every, formula, f"{sign} {number(until.limit)}", void)
+        name, stages, opposite = until.wall or "", p.scene.stages, ""
+        formula = "sqrt(" + "+".join(f"{force(name, k)}*{force(name, k)}" for k in (1, 2, 3)) + ")"
+        if stages and name == stages.wall:
+            axis = 1 + "xyz".index(next(w.axis for w in p.scene.wall if w.name == name and isinstance(w, PlateWall)))
+            formula, opposite = f"abs({force(name, axis)})", f"abs({force(stages.against, axis)})"
+            if until.force:  # a sphere that strikes the punch alone is no pressure
+                formula += f"*({opposite}>={number(BORNE * until.limit)})"
+        sign, near = (">=", 1.0 - MISS) if until.force else ("<=", 1.0 + MISS)
+        return StopCondition(
+            first=first,
+            rows=(run.steps - first) // p.every,
+            formula=formula,
+            condition=f"{sign} {number(near * until.limit)}",
+            void=void,
+            limit=until.limit,
+            look=min(LOOK, p.every),
+            every=p.every,
+            nears=True,
+            opposite=opposite,
+            stop=tuple(stop) if run.stops else (),
+        )
+    rows, condition = (run.steps - first) // p.every, f"{sign} {number(until.limit)}"
+    return StopCondition(first, rows, formula, condition, void, until.limit, min(LOOK, p.every), p.every)
 
 
-def void_height(bed: PressedBed, place: str) -> str:
-    """Formula of the height of the void in a bed under a plate at a place."""
-    height = f"({number(bed.stop)}-{place})" if bed.sign > 0 else f"({place}-{number(bed.stop)})"
-    return f"{height}-{number(bed.solid_height)}"
+def bed_height(bed: PressedBed, place: Callable[[str], str]) -> str:
+    """Formula of the height of a bed between a plate and what it presses against. place: formula of a plate's place."""
+    stop = place(bed.against) if bed.against else number(bed.stop)
+    return f"({stop}-{place(bed.wall)})" if bed.sign > 0 else f"({place(bed.wall)}-{stop})"

@@ -80,6 +80,7 @@ def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.
     for step in range(0, p.steps, p.every):
         if not all(map(math.isfinite, table.get(step, [math.nan]))):
             raise EngineError(f"{out}: the row of step {step} is missing or damaged; run the case again")
+    table = {step: row for step, row in table.items() if step % p.every == 0}  # means belong to these steps
     found = columns.rows(p, table, [*words.values()])
     opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
     found[opposite] = -found[opposite]
@@ -91,6 +92,14 @@ def ends(out: Path, upto: float = math.inf) -> dict[str, int]:
     text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
     found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
     return {name: int(step) for name, step in found if int(step) <= upto}
+
+
+def held(out: Path) -> dict[str, tuple[int, float, float]]:
+    """Of each phase with a condition the step at which it was last looked at, its value, the force on the opposite
+    wall of a press [N], else NaN."""
+    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
+    found = re.findall(r"^phase (\w+) held at step (\d+): (\S+)(?: (\S+))?", text, re.M)
+    return {name: (int(step), float(value), float(other or "nan")) for name, step, value, other in found}
 
 
 def not_reached(out: Path) -> dict[str, str]:

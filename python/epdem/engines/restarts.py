@@ -55,7 +55,7 @@ def choose(frames: Frames, out: Path) -> tuple[int, list[int]]:
     CaseError if there is none at all.
     """
     p, folder = frames.plan, frames.folder
-    p = p.with_ends(log.ends(out)) if p.ends_early else p
+    p = p.with_ends(log.ends(out), held=log.held(out)) if p.ends_early else p
     steps = [step for step in whole_restarts(folder, out) if step < p.steps]  # at the end nothing is left to run
     if not steps:
         raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")

@@ -113,6 +113,8 @@ CHECKS = {  # the unit of value and expected; what passes
     "recovered_work": Column("J", "the plate recovers at most the work that it did"),
     "force_on_all_walls": Column("N", "the force on all walls is the weight of the spheres"),
     "void": Column("", "number of pressed beds that lost all void, which ended the run"),
+    "stage_pressure": Column("Pa", "each stage reaches its pressure (here the one farthest from it)"),
+    "density": Column("", "largest relative density, which stays below 1"),
     "energy_residual": Column("", "the energy balance closes: no term is a remainder"),
     "energy_gained": Column("", "friction, the rest of the energy balance, is not negative"),
 }
@@ -306,6 +308,20 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     return [_row("force_on_all_walls", sum(forces), float(weight.sum()), 0.02 * of_largest)]
 
 
+STAGE = 0.02  # error of the pressure of a stage
+
+
+def _of_stages(stages: pd.DataFrame) -> list[Row]:
+    """Each stage has its pressure, and none is denser than its spheres."""
+    rows, asked = [], stages[stages["asked"].notna()]
+    if not asked.empty:
+        worst = asked.loc[asked["error"].abs().idxmax()]
+        rows.append(_row("stage_pressure", float(worst["reached"]), float(worst["asked"]), STAGE))
+    if not stages.empty:
+        rows.append(_below("density", float(stages["relative_density"].max()), 1.0))
+    return rows
+
+
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: key, sentence, value, expected, relative error, tolerance, unit, passed."""
     rows, many = [], p.output.particles >= MANY
@@ -332,6 +348,7 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 rows.append(_below("loading_stiffness", *stiffness(p, check, tables["rows"])))
                 rows.append(_below("recovered_work", back, put_in))
     rows += _of_parts(p, tables)
+    rows += _of_stages(tables["stages"]) if "stages" in tables else []
     if "energy_balance" in tables and not p.model.loses_energy:
         rows.append(_row("energy_residual", closure(tables["energy_balance"]), 0.0, 0.01))
     elif "energy_balance" in tables and "friction_work" not in p.works:

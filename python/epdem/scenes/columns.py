@@ -31,7 +31,7 @@ UNITS = {  # of the columns that have one
         "rad/s": "omega_x omega_y omega_z",
         "kg": "mass",
         "N": "force force_x force_y force_z",
-        "Pa": "normal_stress shear_stress pressure opposite_pressure radial_pressure",
+        "Pa": "normal_stress shear_stress pressure asked reached peak opposite_pressure radial_pressure",
         "W": "wall_power",
         "J": "kinetic_energy energy plastic_work adhesive_work friction_work friction_energy elastic_energy "
         "kinetic rotation gravity elastic plastic adhesion friction springs work lost_spheres_energy balance",
@@ -127,8 +127,10 @@ def place(p: ScenePlan, wall: str, axis: int, time: Array) -> Array:
     of."""
     found = np.full(len(time), p.triangles[wall][0, 0, axis])
     begin = 0.0
-    for phase, end in zip(p.phases, p.time_at(np.array([phase.end for phase in p.phases])), strict=True):
-        found += phase.velocity(wall)[axis] * (np.clip(time, begin, end if phase is not p.phases[-1] else None) - begin)
+    ends = p.time_at(np.array([phase.end for phase in p.phases]))
+    for phase, end, rest in zip(p.phases, ends, p.rest_times, strict=True):
+        last = None if phase is p.phases[-1] and rest == end else rest
+        found += phase.velocity(wall)[axis] * (np.clip(time, begin, last) - begin)
         begin = end
     return found
 

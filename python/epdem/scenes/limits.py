@@ -255,7 +255,8 @@ class PressedBed(NamedTuple):
     """A bed at the end of the motion of a plate in a phase: its height, the height of its spheres without void [m],
     its area [m^2].
 
-    key: place in the case. axis, sign: the motion; stop: place [m] of the plane that the plate moves to. height: NaN if
+    key: place in the case. axis, sign: the motion; stop: place [m] of the plane that the plate moves to, or at the start
+    of the plate `against` it. height: NaN if
     it is known in the run alone.
     """
 
@@ -268,6 +269,7 @@ class PressedBed(NamedTuple):
     height: float
     solid_height: float
     area: float
+    against: str = ""
 
 
 def refuse_below_solid(beds: Iterable[PressedBed]) -> None:
@@ -305,6 +307,7 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
     """
     plates = [w for w in scene.wall if isinstance(w, PlateWall) and not scene.open_boundary]
     for wall in plates:
+        plate_at = {w.name: w.center["xyz".index(w.axis)] for w in plates if w.axis == wall.axis}
         axis = "xyz".index(wall.axis)
         begin = place = wall.center[axis]
         for n, phase in enumerate(scene.phase):
@@ -319,8 +322,16 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
             if not way:
                 continue
             sign = math.copysign(1.0, way)
-            stops = [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
-            stop = min([*stops, scene.room.limits[2 * axis + (sign > 0)]], key=lambda x: sign * x)
+            stages, against = scene.stages, ""
+            if stages and wall.name == stages.against:
+                break  # the punch has the bed
+            if stages and wall.name == stages.wall and stages.against in plate_at:
+                against = stages.against
+                if sign * (plate_at[against] - begin) < 0:
+                    continue
+            stops = [plate_at[against]] if against else [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
+            ends = stops if against else [*stops, scene.room.limits[2 * axis + (sign > 0)]]
+            stop = min(ends, key=lambda x: sign * x)
             low, high = min(begin, stop), max(begin, stop)
             coming = {later.name for later in scene.phase[n + 1 :]}
             fills = [f for f in insertions if f.phase not in coming]
@@ -332,7 +343,7 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
             if area := _covered(scene, wall, (low, high), fills):
                 key = scene.place(f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height")
                 height = sign * (stop - place)
-                yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area)
+                yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area, against)
 
 
 def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: list[Insertion]) -> float:

@@ -48,6 +48,8 @@ class Phase:
     """A phase of the case. end: its last step, or an earlier one if its condition is met. time_step [s]: the given one,
     or one with which the duration is a whole number of rows.
 
+    held: the step at which `until` held, from which on its walls rest; None: before a run, or without. value, opposite:
+    what was awaited at that step, and of a press the force [N] on the wall against the punch.
     gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
     or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
     """
@@ -57,6 +59,16 @@ class Phase:
     time_step: float
     gates: tuple[str, ...] = ()
     reached: str = ""
+    held: int | None = None
+    value: float = math.nan
+    opposite: float = math.nan
+
+    @property
+    def stops(self) -> bool:
+        """Whether the walls rest from the step on at which a force is reached; the phase ends with the row."""
+        condition = self.case.condition
+        of_force = condition is not None and condition.wall is not None
+        return of_force and all(isinstance(move, LinearMove) for move in self.moves.values())
 
     @property
     def name(self) -> str:
@@ -185,8 +197,15 @@ class ScenePlan:
         ended = [phase.name for phase in self.phases if phase.reached == NO_VOID]
         return next((bed for bed in self.pressed if bed.phase in ended), None)
 
-    def with_ends(self, ends: Mapping[str, int], reached: Mapping[str, str] = MappingProxyType({})) -> "ScenePlan":
+    def with_ends(
+        self,
+        ends: Mapping[str, int],
+        reached: Mapping[str, str] = MappingProxyType({}),
+        held: Mapping[str, tuple[int, float, float]] = MappingProxyType({}),
+    ) -> "ScenePlan":
         """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it.
+
+        held: step at which the condition was last looked at, its value, the force on the opposite wall.
 
         reached: NOT_REACHED of the phases that ended by their duration although they have a condition; NO_VOID of a
         phase that ended the run, so that the phases behind it have no step.
@@ -198,7 +217,8 @@ class ScenePlan:
             end = phases[-1].end if solid else ends.get(phase.name, phase.end + shift)
             shift = end - phase.end
             word = NO_VOID if solid else reached.get(phase.name, REACHED if phase.case.condition else phase.reached)
-            phases.append(replace(phase, end=end, reached=word))
+            step, value, opposite = held.get(phase.name, (phase.held, phase.value, phase.opposite))
+            phases.append(replace(phase, end=end, reached=word, held=step, value=value, opposite=opposite))
         return replace(self, phases=tuple(phases))
 
     def frame_steps(self, every: int) -> list[int]:
@@ -215,7 +235,9 @@ class ScenePlan:
         times = self.time_at(ends)
         names = [phase.name for phase in self.phases]
         table = {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
-        return pd.DataFrame(table | {"until": [phase.reached for phase in self.phases]})
+        held = [phase.end if phase.held is None else phase.held for phase in self.phases]
+        more = {"held": held, "value": [x.value for x in self.phases], "opposite": [x.opposite for x in self.phases]}
+        return pd.DataFrame(table | {"until": [phase.reached for phase in self.phases]} | more)
 
     def time_at(self, steps: np.ndarray) -> np.ndarray:
         """Times [s] of steps."""
@@ -225,10 +247,15 @@ class ScenePlan:
         lengths = np.diff(ends) * [phase.time_step for phase in self.phases]
         return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
 
+    @property
+    def rest_times(self) -> np.ndarray:
+        """Times [s] from which on the walls that move in each phase rest: its end, or when its condition held."""
+        return self.time_at(np.array([p.held if p.stops and p.held is not None else p.end for p in self.phases]))
+
     def motions_until(self, step: int) -> list[tuple[dict[str, Move], float]]:
         """The motions of each phase and how long [s] the phase has lasted at a step."""
         table, now = self.phase_table, float(self.time_at(np.array([step]))[0])
-        lasted = (np.minimum(table["end_time"], now) - table["begin_time"]).clip(lower=0.0)
+        lasted = (np.minimum(self.rest_times, now) - table["begin_time"]).clip(lower=0.0)
         return [(phase.moves, float(seconds)) for phase, seconds in zip(self.phases, lasted, strict=True)]
 
     @property

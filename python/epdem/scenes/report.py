@@ -183,6 +183,9 @@ def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(Axis("pressure", "Pa"), Axis("relative density"), series)]
 
 
+LEAST_POINTS = 3  # of a line through stages
+
+
 def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
     """ln 1/(1-D) against the largest pressure so far, and Heckel's line through the ends of loading.
 
@@ -191,13 +194,32 @@ def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
     pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
     rising = (pressure >= np.maximum.accumulate(pressure)) & (pressure > 0.0) & (density < 1.0)
     series = [Series("punch", pressure[rising], -np.log(1.0 - density[rising]), 0)]
-    ends = stages.loaded(p, tables["stages"])
-    if len(ends) > 1:
-        x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].clip(lower=1e-3).to_numpy())
+    ends = stages.compared(stages.loaded(p, tables["stages"]))
+    if len(ends) >= LEAST_POINTS:
+        x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].to_numpy())
         slope, begin = np.polyfit(x, y, 1)
-        name = f"Heckel, 1/slope = {1.0 / slope:.3g} Pa"
+        name = f"Heckel, {len(x)} points, 1/slope = {1.0 / slope:.3g} Pa"
         series.append(Series(name, x, begin + slope * x, INK, "dash"))
     return [Panel(Axis("pressure", "Pa"), Axis("ln 1/(1 - relative density)"), series)]
+
+
+def _kawakita(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """P/C against P, C = 1 - D0/D with the density D0 at which the punch meets the bed, and the line through the ends of
+    loading, P/C = 1/(a b) + P/a.
+
+    Kawakita and Luedde 1971, Powder Technol. 4, 61.
+    """
+    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
+    ends = stages.compared(stages.loaded(p, tables["stages"]))
+    if len(ends) < LEAST_POINTS or not (pressure > 0.0).any():
+        return []
+    first = float(density[np.argmax(pressure > 0.0)])
+    x = ends["pressure"].to_numpy()
+    y = x / (1.0 - first / ends["relative_density"].to_numpy())
+    slope, begin = np.polyfit(x, y, 1)
+    name = f"Kawakita, {len(x)} points, a = {1.0 / slope:.3g}, 1/b = {begin / slope:.3g} Pa"
+    series = [Series("ends of stages", x, y, INK, None, 0), Series(name, x, begin + slope * x, INK, "dash")]
+    return [Panel(Axis("pressure", "Pa"), Axis("pressure over volume reduction", "Pa"), series)]
 
 
 def _springback(p: ScenePlan, tables: Tables) -> list[Panel]:
@@ -265,6 +287,7 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
 OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
     "densification": _densification,
     "heckel": _heckel,
+    "kawakita": _kawakita,
     "springback": _springback,
 }
 OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {

@@ -168,7 +168,9 @@ def _as_run(p: ScenePlan, tables: Tables) -> ScenePlan:
         return p
     phases = tables["phases"]
     ends = dict(zip(phases["phase"], phases["end"].astype(int), strict=True))
-    return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
+    looked = zip(phases["held"].astype(int), phases["value"].astype(float), phases["opposite"].astype(float), strict=True)
+    held = {x.name: at for x, at in zip(p.phases, looked, strict=True) if x.case.condition}
+    return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)), held)
 
 
 def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
@@ -180,10 +182,10 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
                 f"{folder}: no frame holds a sphere; all have left the room, see the engine's output there"
             )
         tables["energy_balance"] = checks.energy_balance(p, tables)
-    tables["checks"] = checks.checks(p, tables)
     if p.scene.stages:
         tables["rows"] = stages.with_densities(p, tables)
         tables["stages"] = stages.table(p, tables)
+    tables["checks"] = checks.checks(p, tables)
     if p.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])
         tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)

@@ -10,9 +10,12 @@ from ..case.outputs import Stages
 from ..case.walls import PlateWall
 from .checks import work_of_walls
 from .columns import FORCE, NORMAL, place
+from .limits import DENSE
 from .plan import Phase, ScenePlan
 
 SLOW = 1e-3  # inertial number below which a bed deforms as if at rest [GDR MiDi 2004, Eur. Phys. J. E 14, 341]
+NEAR = 5e-3  # error of the pressure of a stage from which on a sentence names it
+FITTED = 0.95  # relative density up to which a stage counts for a fit
 Tables = dict[str, pd.DataFrame]
 
 
@@ -59,7 +62,9 @@ def with_densities(p: ScenePlan, tables: Tables) -> pd.DataFrame:
 def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """One row per phase from the first in which the punch moves towards the wall against it, SI.
 
-    pressure, opposite_pressure: means of the last row of the phase. springback: axial strain since the end of the last
+    asked, reached: pressure of a stage, and that at the step at which it was found to be there, within MISS; error: of
+    both. pressure, opposite_pressure: at that step in phases with `until`, else means of the last row of the phase;
+    peak: the largest in the phase. springback: axial strain since the end of the last
     phase of loading, in phases in which the punch moves away. radial_pressure: of the frame at the end of the phase,
     NaN after a release, where the law leaves too much of it. work, plastic, elastic: as in the energy balance.
     """
@@ -71,8 +76,19 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     chosen = phases.iloc[first:][phases.iloc[first:]["end"] > phases.iloc[first:]["begin"]]
     ends = chosen["end"].to_numpy(int)
     found = pd.DataFrame({"phase": chosen["phase"].to_numpy(), "step": ends, "time": chosen["end_time"].to_numpy()})
-    found["pressure"] = rows[stages.pressure].reindex(ends).to_numpy()
-    found["opposite_pressure"] = rows[stages.opposite].reindex(ends).to_numpy()
+    conditions = [p.phases[n].case.condition for n in chosen.index]
+    of_punch = np.array([c is not None and c.wall == stages.wall for c in conditions])
+    asked = [c.force for c in conditions if c and c.wall == stages.wall]
+    found["asked"] = math.nan
+    found.loc[of_punch, "asked"] = [math.nan if x is None else x / stages.area for x in asked]
+    value, opposite = (chosen[name].to_numpy(float) / stages.area for name in ("value", "opposite"))
+    known = of_punch & np.isfinite(value)  # not where a bed without void has ended the run
+    found["pressure"] = np.where(known, value, rows[stages.pressure].reindex(ends))
+    found["opposite_pressure"] = np.where(known, opposite, rows[stages.opposite].reindex(ends))
+    found["reached"] = found["pressure"].where(found["asked"].notna())
+    found["error"] = found["reached"] / found["asked"] - 1.0
+    spans = zip(chosen["begin"], ends, found["pressure"], strict=True)
+    found["peak"] = [max(end, rows[stages.pressure].loc[low + 1 : high].max()) for low, high, end in spans]
     found["height"] = heights(p, stages, found["time"].to_numpy())
     found["relative_density"] = volume(p, tables) / (stages.area * found["height"])
     found["porosity"] = 1.0 - found["relative_density"]
@@ -138,12 +154,30 @@ def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
     return found
 
 
+def compared(stages: pd.DataFrame) -> pd.DataFrame:
+    """The rows of loading that lines through stages are fitted to: without those that are nearly solid."""
+    return stages[stages["relative_density"] < FITTED]
+
+
 def warnings(p: ScenePlan, tables: Tables) -> list[str]:
-    """A sentence for a press that is too fast for an even stress while it loads, for an ejection, and for spheres that
+    """A sentence for a stage beside its pressure, for a bed too dense for the laws, for a press that is too fast for an even stress while it loads, for an ejection, and for spheres that
     have passed the punch."""
     declared = p.scene.stages
     assert declared is not None
-    found, numbers = [], inertial_numbers(p, loaded(p, tables["stages"]))
+    table, found = tables["stages"], []
+    numbers = inertial_numbers(p, loaded(p, table))
+    found += [
+        f"phase {row['phase']}: {row['reached']:.4g} Pa, {row['error']:+.2%} beside the {row['asked']:.4g} Pa asked for; "
+        "press slower near it"
+        for row in table[table["error"].abs() > NEAR].to_dict("records")
+    ]
+    dense = table[table["relative_density"] > DENSE]
+    if not dense.empty:
+        worst = dense.loc[dense["relative_density"].idxmax()]
+        found.append(
+            f"phase {worst['phase']}: the relative density is {worst['relative_density']:.3g}, and above {DENSE} no "
+            "contact law of spheres gives the pressure (docs/choose.md, Pressing); press less"
+        )
     if not numbers.empty and numbers.max() > SLOW:
         name = tables["stages"]["phase"][numbers.idxmax()]
         speed = next(towards(p, declared, phase) for phase in p.phases if phase.name == name)

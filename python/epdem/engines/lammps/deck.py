@@ -18,7 +18,7 @@ from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse
 from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words
-from .scene_walls import DeckWall, meshes, motions, plane, plate_place, restart_commands
+from .scene_walls import DeckWall, meshes, force, height, motions, plane, restart_commands, stop_commands
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -125,7 +125,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             gates=tuple(gates[name] for name in run.added),
             commands=tuple(motions(p, number)) if number else (),
             ends=tuple(decks.wall_id(name) for name in run.removed),
-            stop=stop_condition(p, run, partial(plate_place, p)),
+            stop=stop_condition(p, run, partial(height, p), force, stop_commands(p, run)),
             restart_commands=restart_commands(p, number),
         )
 

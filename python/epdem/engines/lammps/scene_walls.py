@@ -26,7 +26,7 @@ from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import WRITE_RESTART
+from ..input_script import bed_height, WRITE_RESTART
 from . import words
 
 
@@ -195,7 +195,7 @@ def _motion_words(p: ScenePlan, name: str) -> str:
 def _begin(p: ScenePlan, name: str, number: int) -> int:
     """The number of the phase in which a wall got the motion that it has in the phase of a number."""
     moves = [phase.moves.get(name) for phase in p.phases]
-    while number and moves[number] == moves[number - 1]:
+    while number and moves[number] == moves[number - 1] and not (moves[number] and p.phases[number - 1].stops):
         number -= 1
     return number
 
@@ -256,10 +256,27 @@ def restart_commands(p: ScenePlan, number: int) -> tuple[str, ...]:
     return (f"print 'motions at step $(step): {values}'",) * bool(names) + WRITE_RESTART
 
 
-def plate_place(p: ScenePlan, bed: PressedBed) -> str:
-    """Formula of the place of a plate that presses a bed."""
-    (begin,) = {w.center[bed.axis] for w in p.scene.wall if isinstance(w, PlateWall) and w.name == bed.wall}
-    return f"(v_{wall_id(bed.wall)}_{'xyz'[bed.axis]}+{number(begin)})"
+def height(p: ScenePlan, bed: PressedBed) -> str:
+    """Formula of the height of a bed between plates."""
+    begin = {w.name: w.center[bed.axis] for w in p.scene.wall if isinstance(w, PlateWall)}
+    key = "xyz"[bed.axis]
+
+    def place(name: str) -> str:
+        moved = f"v_{wall_id(name)}_{key}+" if key in _changing(p, name) else ""
+        return f"({moved}{number(begin[name])})"
+
+    return bed_height(bed, place)
+
+
+def stop_commands(p: ScenePlan, phase: Phase) -> list[str]:
+    """Commands that leave the walls that move in a phase where they are."""
+    names = [f"{wall_id(name)}_{key}" for name in phase.moves for key in _changing(p, name)]
+    return [f"variable {name} equal $(v_{name}:%.17g)" for name in names]
+
+
+def force(name: str, k: int) -> str:
+    """A component of the force on a wall at a step."""
+    return f"f_{wall_id(name)}[{k}]"
 
 
 def _servo(id: str, move: PressMove) -> Iterator[str]:

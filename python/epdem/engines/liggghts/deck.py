@@ -215,8 +215,13 @@ def deck(p: ScenePlan) -> SceneDeck:
         wall_history=history(m, wall=True),
         contact_columns=contact_columns(history(m).values(), memory(m), 1),
         wall_contact_columns=contact_columns(history(m, wall=True).values(), memory(m, wall=True), 2),
-        row_words=("c_ratio[1]", "c_ratio[2]", *row_words(p)),
+        row_words=("c_ratio[1]", "c_ratio[2]", *row_words(p), *["v_awaited", "v_opposite"] * _looks_at_primitives(commands)),
     )
+
+
+def _looks_at_primitives(commands: Sequence[DeckPhase]) -> bool:
+    """Whether a condition needs a sum over spheres, which LIGGGHTS has at a step only if its thermo line has it."""
+    return any("c_load" in x.stop.formula + x.stop.opposite for x in commands if x.stop)
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -4,7 +4,7 @@
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -17,7 +17,15 @@ from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ..input_script import WRITE_RESTART, StopCondition, data_text, stop_condition, taken_places, torque_origin
+from ..input_script import (
+    WRITE_RESTART,
+    StopCondition,
+    bed_height,
+    data_text,
+    stop_condition,
+    taken_places,
+    torque_origin,
+)
 from .primitives import Primitive, primitive, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
@@ -180,7 +188,7 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
 
 def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
     """The walls of triangles."""
-    pressed, formulas = {bed.wall for bed in p.pressed}, tubes(p)
+    pressed, formulas = {name for bed in p.pressed for name in (bed.wall, bed.against)}, tubes(p)
     found = []
     for name, mesh in p.scene.meshes.items():
         if name in formulas:
@@ -224,10 +232,22 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
     return f"fix move_{name} all move/mesh mesh {wall} {words}", f"unfix move_{name}"
 
 
-def _place(p: ScenePlan, bed: PressedBed) -> str:
-    k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
-    reference = begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]  # LIGGGHTS moves it with the wall
-    return f"(f_{decks.wall_id(bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
+def _height(p: ScenePlan, bed: PressedBed) -> str:
+    k = bed.axis
+
+    def place(name: str) -> str:
+        begin = p.triangles[name][0, 0, k]
+        reference = begin if _press(p, name) else torque_origin(p, name)[k]  # LIGGGHTS moves it with the wall
+        return f"(f_{decks.wall_id(name)}[{7 + k}]+{decks.number(begin - reference)})"
+
+    return bed_height(bed, place)
+
+
+def _force(p: ScenePlan, name: str, k: int) -> str:
+    """A component of the force on a wall at a step; of a primitive one as rows have it."""
+    if name in p.scene.meshes and name not in tubes(p):
+        return f"f_{decks.wall_id(name)}[{k}]"
+    return f"c_load{1 + p.measured_walls.index(name)}[{k}]"
 
 
 def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
@@ -238,7 +258,12 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     for run in p.phase_steps:
         motions = {name: _motion(p, name, move) for name, move in run.moves.items()}
         before, after = run.before, run.after
-        new = [name for name, move in run.moves.items() if before is None or before.moves.get(name) != move]
+        rests = before is not None and before.stops  # all walls
+        new = [name for name, x in run.moves.items() if before is None or rests or before.moves.get(name) != x]
+        stop = [end for _, end in motions.values()] if run.stops else []
+        if stop and with_power:
+            still = replace(run, case=run.case.model_copy(update={"move": []}))
+            stop.append(f"variable power equal {power(p, still)}")
         part = DeckPhase(
             run=run,
             steps=run.steps,
@@ -248,13 +273,13 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             resume_commands=tuple(begin for begin, _ in motions.values()),
             end_commands=(
                 *(f"unfix {decks.wall_id(name)}" for name in run.removed),
-                *(end for name, (_, end) in motions.items() if after and not _goes_on(name, run, after)),
+                *(end for name, (_, end) in motions.items() if after and not (run.stops or _goes_on(name, run, after))),
             ),
             bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
             places=taken_places(p, run.name, "r"),
             power=power(p, run) if with_power else "",
             vibrations=tuple(_angles(before, run, new)) if with_power else (),
-            stop=stop_condition(p, run, partial(_place, p)),
+            stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop),
         )
         found.append(part)
     return tuple(found)

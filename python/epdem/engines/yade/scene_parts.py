@@ -5,6 +5,7 @@ import math
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from ...base import rendering as decks
 from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, VibrateMove
@@ -13,7 +14,7 @@ from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ..input_script import first_look, torque_origin, void_height
+from ..input_script import BORNE, MISS, bed_height, first_look, torque_origin
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
@@ -137,26 +138,50 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
     return f"spheres_{phase}.txt" if any(b.phase == phase for b in p.scene.later) else ""
 
 
-def stop(p: ScenePlan, run: PhaseSteps) -> tuple[str, int] | None:
-    """The condition on a row that may end a phase early, and the steps after which it is evaluated."""
+@dataclass(frozen=True)
+class Stop:
+    """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the force
+    on the opposite wall; every: steps between two looks, 0: rows; walls: that rest from then on."""
+
+    value: str
+    condition: str
+    after: int
+    opposite: str = ""
+    at_rows: bool = True
+    walls: tuple[str, ...] = ()
+
+
+def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
+    """The condition that may end a phase early."""
     until = run.case.condition
     if until is None:
         return None
-    limit = decks.number(until.limit)
+    limit, after = decks.number(until.limit), first_look(p, run)
     if until.kinetic_energy is not None:
-        condition = f'row["kinetic_energy"] < {limit} * row["particles"]'
-    elif until.count is not None:
-        condition = f'row["particles"] <= {limit}'
-    else:
-        force = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])'
-        condition = f"{force} {'>=' if until.force else '<='} {limit}"
-    return condition, first_look(p, run)
+        energy = 'row["kinetic_energy"] / row["particles"] if row["particles"] else np.inf'
+        return Stop(energy, f"< {limit}", after)
+    if until.count is not None:
+        return Stop('row["particles"]', f"<= {limit}", after)
+    value, opposite, stages = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])', "", p.scene.stages
+    if stages and until.wall == stages.wall:
+        axis = next(w.axis for w in p.scene.wall if w.name == stages.wall and isinstance(w, PlateWall))
+        value, opposite = (f'abs(row["{name}_force_{axis}"])' for name in (stages.wall, stages.against))
+        if until.force:  # a sphere that strikes the punch alone is no pressure
+            value += f" * ({opposite} >= {decks.number(BORNE * until.limit)})"
+    near = until.limit * (1.0 - MISS if until.force else 1.0 + MISS)
+    condition = f"{'>=' if until.force else '<='} {decks.number(near)}"
+    return Stop(value, condition, after, opposite, False, tuple(run.moves) if run.stops else ())
 
 
 def void(p: ScenePlan, phase: str) -> str:
     """Formula of the height of the void in the bed that is pressed in a phase; "": no bed is."""
     beds = [bed for bed in p.pressed if bed.phase == phase]
-    return next((void_height(bed, f'O.bodies[walls["{bed.wall}"][0]].state.pos[{bed.axis}]') for bed in beds), "")
+
+    def place(axis: int, name: str) -> str:
+        return f'O.bodies[walls["{name}"][0]].state.pos[{axis}]'
+
+    heights = (f"{bed_height(bed, partial(place, bed.axis))}-{decks.number(bed.solid_height)}" for bed in beds)
+    return next(heights, "")
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -103,7 +103,10 @@ class Recorder:
         self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
         self.values: dict[str, float] = {}  # of the last row
         self._begin, self._end, self._records, self._recorded = 0, 0, False, False
-        self._until: Callable[[dict[str, float]], bool] | None = None  # of this phase
+        self._until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None  # of this phase
+        self._opposite: Callable[[dict[str, float]], float] | None = None
+        self._stops: Sequence[int] | None = None
+        self._held, self._value, self._other = -1, 0.0, 0.0  # step at which the condition held, what it held at
         self._void: Callable[[], float] | None = None
         self._looked = 0
         self._reached, self._solid = False, False  # whether the condition holds, whether the bed has lost its void
@@ -116,12 +119,15 @@ class Recorder:
         *,
         record: bool = True,
         fills: Sequence[Fill] = (),
-        until: Callable[[dict[str, float]], bool] | None = None,
+        until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None,
+        opposite: Callable[[dict[str, float]], float] | None = None,
+        stops: Sequence[int] | None = None,
         after: int = 0,
         void: Callable[[], float] | None = None,
     ) -> None:
-        """A phase. record: whether it has frames and tables; until: whether a row ends the phase, looked at in the rows
-        more than `after` steps from its begin; void: height of the void in a pressed bed [m], whose loss ends the run
+        """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, looked
+        at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies that rest
+        from then on, where each step is looked at, not each row; void: height of the void in a pressed bed [m], whose loss ends the run
         with a frame and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
@@ -129,6 +135,7 @@ class Recorder:
         self._records, self._recorded = record, self._records
         self._begin, self._end = self._end, self._end + steps
         self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
+        self._opposite, self._stops, self._held = opposite, stops, -1
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
@@ -141,6 +148,9 @@ class Recorder:
         self._end = O.iter - 1
         if until and not self._reached:
             print(f"phase {name} was not ended by its condition")
+        if until:
+            other = f" {self._other:.10g}" if opposite else ""
+            print(f"phase {name} held at step {self._held if self._held >= 0 else self._end}: {self._value:.10g}{other}")
         print(f"phase {name} ended at step {self._end}", flush=True)
 
     def _step(self, fills: Sequence[Fill]) -> None:
@@ -157,13 +167,17 @@ class Recorder:
         """Between forces and motion: all that is due at this step."""
         if self.means:
             self._sums, self._samples = self._sums + self.on_walls(), self._samples + 1
+        if self._stops is not None:
+            self._look(dict(zip(self.means, self.on_walls().tolist(), strict=True)))
         if O.iter > 0:
             self.triangles.wear()
         if O.iter % self.every == 0:
             self.spheres.remove_outside(self.low, self.high)
             self.row()
             self._solid = O.iter > self._begin and self._void is not None and self._void() <= 0.0
-            self._reached = O.iter > self._looked and self._until is not None and self._until(self.values)
+            if self._stops is None:
+                self._look(self.values)
+            self._reached = self._held >= 0
         ended = self._recorded and O.iter == self._begin  # the phase before
         if not (self._records or ended):
             return
@@ -172,6 +186,18 @@ class Recorder:
             self.frame()
         if self.tables and (last or O.iter % self.tables == 0):
             self.contact_table()
+
+    def _look(self, row: dict[str, float]) -> None:
+        """Whether the condition of the phase holds, in which case its walls rest."""
+        if self._until is None or self._held >= 0 or O.iter <= self._looked:
+            return
+        value, holds = self._until
+        self._value = float(value(row))
+        self._other = float(self._opposite(row)) if self._opposite else 0.0
+        if holds(self._value):
+            self._held = O.iter
+            for k in self._stops or ():
+                O.bodies[k].state.vel = (0, 0, 0)
 
     def on_walls(self) -> Any:
         """The power of moving walls [W], then force [N] and torque [N m] on each wall, in the order of the names."""
