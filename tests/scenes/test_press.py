@@ -64,15 +64,22 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     found, rows, spheres = pressed.results.tables["stages"], pressed.results.rows, pressed.results.particles
     assert found["phase"].to_list() == [f"{name}{k}" for k in (1, 2) for name in ("stage", "hold", "release")]
     at = rows.set_index("step").loc[found["step"]]
-    assert found["pressure"].to_numpy() == pytest.approx(at["pressure"]) and (at["pressure"] > 0).all()
+    holds = found["phase"].str.startswith("hold").to_numpy()
+    assert found["pressure"][holds].to_numpy() == pytest.approx(at["pressure"][holds]) and (at["pressure"] > 0).all()
     reached = found.set_index("phase")["pressure"]
     for k, pressure in enumerate(PRESSURES, 1):
-        assert pressure <= reached[f"stage{k}"] < 1.3 * pressure
+        assert reached[f"stage{k}"] == pytest.approx(pressure, rel=5e-3)
         assert reached[f"release{k}"] <= 0.011 * pressure
+    by_phase = found.set_index("phase")
+    assert by_phase["asked"].dropna().to_dict() == pytest.approx({"stage1": PRESSURES[0], "stage2": PRESSURES[1]})
+    assert by_phase["reached"].dropna().to_dict() == {name: reached[name] for name in ("stage1", "stage2")}
+    assert (by_phase["peak"] >= by_phase["pressure"]).all()
     # the way of the punch from its speed alone
     speed = {"stage": -3.0, "hold": 0.0, "release": 0.5}
     times = pressed.results.phases.set_index("phase")
-    ways = [speed[x.rstrip("12")] * (times["end_time"][x] - times["begin_time"][x]) for x in found["phase"]]
+    spent = (times["end_time"] - times["begin_time"]) * (times["held"] - times["begin"])
+    spent /= times["end"] - times["begin"]  # the punch rests from the step on at which the pressure was there
+    ways = [speed[x.rstrip("12")] * spent[x] for x in found["phase"]]
     height = HEIGHT + np.cumsum(ways)
     assert found["height"].to_numpy() == pytest.approx(height, rel=1e-9)
     volume = COUNT * 4 / 3 * math.pi * RADIUS**3
@@ -102,10 +109,7 @@ def test_the_page_has_density_over_pressure_and_heckels_line_through_the_stages(
     density, heckel, springback = chart.panels
     ends = pressed.results.tables["stages"]
     assert np.asarray(density.series[1].y) == pytest.approx(ends["relative_density"].to_numpy())
-    line = heckel.series[1]
-    one, two = ends[ends["phase"].isin(["stage1", "stage2"])].to_dict("records")
-    slope = (math.log(one["porosity"]) - math.log(two["porosity"])) / (two["pressure"] - one["pressure"])
-    assert line.name == f"Heckel, 1/slope = {1 / slope:.3g} Pa"
+    assert len(heckel.series) == 1, "two stages are no line"
     rows = pressed.results.rows.set_index("step")
     for curve, name in zip(springback.series, ("release1", "release2"), strict=True):
         at = int(ends.index[ends["phase"] == name][0])
@@ -191,7 +195,8 @@ def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
     assert found["relative_density"].to_numpy() == pytest.approx(other["relative_density"].to_numpy(), abs=0.02)
     assert found["pressure"]["stage1"] == pytest.approx(found["opposite_pressure"]["stage1"], rel=0.1)
     pressed = two.results.phases.set_index("phase").loc["stage1"]
-    way = 1.5 * (pressed["end_time"] - pressed["begin_time"])  # of each, at half of 3 m/s
+    moved = (pressed["held"] - pressed["begin"]) / (pressed["end"] - pressed["begin"])
+    way = 1.5 * moved * (pressed["end_time"] - pressed["begin_time"])  # of each, at half of 3 m/s
     assert found["height"]["stage1"] == pytest.approx(HEIGHT - 2.0 * way, rel=1e-9)
     last = two.results.particles[two.results.particles["step"] == pressed["end"]]
     assert last["z"].min() > way and last["z"].max() < HEIGHT - way
@@ -230,6 +235,7 @@ REFUSED = [
     (press(diameter="1 mm"), "a round die has a diameter, and neither box nor periodic"),
     (press(mass="1 mg"), "give one of count and mass"),
     (press(stages=[]), "stages"),
+    (press(release=False, stages=["50 MPa", "20 MPa"]), "2e.07 Pa does not rise above the stage before"),
     (press() | {"measured": {"source": "x", "pressures": ["1 MPa"], "relative_densities": [60]}}, "percent"),
     (press() | {"measured": {"source": "x", "pressures": ["1 MPa"], "relative_densities": []}}, "one density for each"),
     (read_toml(CASES / "settle_glass.toml") | {"measured": press()["measured"]}, "take kind press"),
@@ -264,6 +270,7 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     p = plan(parse(without(press(periodic=True), "hold")))
     ends = [phase.end for phase in p.phases]
     stage = {"phase": ["stage2"], "step": [ends[1]], "pressure": [40e6], "height": [0.4e-3]}
+    stage |= {"error": [0.004], "asked": [40e6], "reached": [40e6], "relative_density": [0.89]}
     spheres = {"step": [ends[1]] * 2, "x": [0.0] * 2, "y": [0.0] * 2, "z": [0.1e-3, 0.41e-3]}
     tables = {"stages": pd.DataFrame(stage), "particles": pd.DataFrame(spheres)}
     number = 3.0 / 0.4e-3 * 2 * RADIUS * math.sqrt(8960 / 40e6)
@@ -276,6 +283,9 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     data["scene"]["particles"] = [{"material": name, "radius": "50 um", "share": 0.5} for name in ("powder", "heavy")]
     both = stages.inertial_numbers(plan(parse(data)), tables["stages"])
     assert both.to_list() == pytest.approx([math.sqrt(2.0) * number], rel=1e-12)
+    near = stages.warnings(p, tables | {"stages": tables["stages"].assign(error=0.006, relative_density=0.91)})
+    assert near[0].startswith("phase stage2: 4e+07 Pa, +0.60% beside the 4e+07 Pa asked for")
+    assert near[1].startswith("phase stage2: the relative density is 0.91, and above 0.9 no contact law")
     slow = replace(p, phases=tuple(p.phases[:1]))
     assert stages.warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []
 

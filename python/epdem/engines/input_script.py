@@ -213,7 +213,7 @@ def stop_condition(
             stop=tuple(stop) if run.stops else (),
         )
     rows, condition = (run.steps - first) // p.every, f"{sign} {number(until.limit)}"
-    return StopCondition(first, rows, formula, condition, void, until.limit, min(LOOK, p.every), p.every)
+    return StopCondition(first, rows, formula, condition, void, until.limit, p.every, p.every)
 
 
 def bed_height(bed: PressedBed, place: Callable[[str], str]) -> str:
