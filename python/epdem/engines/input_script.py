@@ -112,10 +112,9 @@ def impact_model(plan: Plan) -> Model:
 class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
-    formula: "" without a condition; limit: its value. falls: whether the condition is to be at most the limit. look:
-    steps between two looks, fewer as the limit comes nearer if `nears`. opposite: formula of the force on the wall
-    against a punch. stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends the run at 0;
-    "": no bed is pressed.
+    formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes nearer if
+    `nears`. opposite: formula of the force on the wall against a punch. stop: commands that bring the walls to rest.
+    void: formula of the height of the void in a pressed bed, which ends the run at 0; "": no bed is pressed.
     """
 
     first: int

@@ -255,9 +255,8 @@ class PressedBed(NamedTuple):
     """A bed at the end of the motion of a plate in a phase: its height, the height of its spheres without void [m],
     its area [m^2].
 
-    key: place in the case. axis, sign: the motion; stop: place [m] of the plane that the plate moves to, or at the start
-    of the plate `against` it. height: NaN if
-    it is known in the run alone.
+    key: place in the case. axis, sign: the motion; stop: place [m] of the plane that the plate moves to, or at the
+    start of the plate `against` it. height: NaN if it is known in the run alone.
     """
 
     key: str
@@ -329,7 +328,11 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
                 against = stages.against
                 if sign * (plate_at[against] - begin) < 0:
                     continue
-            stops = [plate_at[against]] if against else [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
+            stops = (
+                [plate_at[against]]
+                if against
+                else [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
+            )
             ends = stops if against else [*stops, scene.room.limits[2 * axis + (sign > 0)]]
             stop = min(ends, key=lambda x: sign * x)
             low, high = min(begin, stop), max(begin, stop)

@@ -204,8 +204,8 @@ def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 
 def _kawakita(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """P/C against P, C = 1 - D0/D with the density D0 at which the punch meets the bed, and the line through the ends of
-    loading, P/C = 1/(a b) + P/a.
+    """P/C against P, C = 1 - D0/D with the density D0 at which the punch meets the bed, and the line through the ends
+    of loading, P/C = 1/(a b) + P/a.
 
     Kawakita and Luedde 1971, Powder Technol. 4, 61.
     """

@@ -160,15 +160,15 @@ def compared(stages: pd.DataFrame) -> pd.DataFrame:
 
 
 def warnings(p: ScenePlan, tables: Tables) -> list[str]:
-    """A sentence for a stage beside its pressure, for a bed too dense for the laws, for a press that is too fast for an even stress while it loads, for an ejection, and for spheres that
-    have passed the punch."""
+    """A sentence for a stage beside its pressure, for a bed too dense for the laws, for a press that is too fast for an
+    even stress while it loads, for an ejection, and for spheres that have passed the punch."""
     declared = p.scene.stages
     assert declared is not None
     table, found = tables["stages"], []
     numbers = inertial_numbers(p, loaded(p, table))
     found += [
-        f"phase {row['phase']}: {row['reached']:.4g} Pa, {row['error']:+.2%} beside the {row['asked']:.4g} Pa asked for; "
-        "press slower near it"
+        f"phase {row['phase']}: {row['reached']:.4g} Pa, {row['error']:+.2%} beside the {row['asked']:.4g} Pa asked "
+        "for; press slower near it"
         for row in table[table["error"].abs() > NEAR].to_dict("records")
     ]
     dense = table[table["relative_density"] > DENSE]

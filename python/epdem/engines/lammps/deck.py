@@ -18,7 +18,7 @@ from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse
 from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words
-from .scene_walls import DeckWall, meshes, force, height, motions, plane, restart_commands, stop_commands
+from .scene_walls import DeckWall, force, height, meshes, motions, plane, restart_commands, stop_commands
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {  # what dumps call the works and energies of a sphere

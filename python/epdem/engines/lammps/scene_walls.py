@@ -26,7 +26,7 @@ from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import bed_height, WRITE_RESTART
+from ..input_script import WRITE_RESTART, bed_height
 from . import words
 
 

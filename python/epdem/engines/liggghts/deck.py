@@ -215,7 +215,12 @@ def deck(p: ScenePlan) -> SceneDeck:
         wall_history=history(m, wall=True),
         contact_columns=contact_columns(history(m).values(), memory(m), 1),
         wall_contact_columns=contact_columns(history(m, wall=True).values(), memory(m, wall=True), 2),
-        row_words=("c_ratio[1]", "c_ratio[2]", *row_words(p), *["v_awaited", "v_opposite"] * _looks_at_primitives(commands)),
+        row_words=(
+            "c_ratio[1]",
+            "c_ratio[2]",
+            *row_words(p),
+            *["v_awaited", "v_opposite"] * _looks_at_primitives(commands),
+        ),
     )
 
 

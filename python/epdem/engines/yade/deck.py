@@ -17,6 +17,7 @@ from .classes import ContactClasses, functors, materials
 from .scene_parts import (
     HEAD,
     DeckFill,
+    Stop,
     Wall,
     bodies_file,
     check_walls,
@@ -101,7 +102,7 @@ class DeckPhase:
     motions: tuple[Move, ...]
     bodies: str
     fills: tuple[DeckFill, ...]
-    stop: tuple[str, int] | None
+    stop: Stop | None
     void: str
 
 
@@ -168,7 +169,11 @@ def deck(p: ScenePlan) -> SceneDeck:
         skin=skin,
         phases=phases,
         motions=tuple(motion for phase in phases for motion in phase.motions),
-        sampling=1 if every_step or any(phase.stops for phase in p.phases) else p.sampling if p.measured_walls else p.every,
+        sampling=1
+        if every_step or any(phase.stops for phase in p.phases)
+        else p.sampling
+        if p.measured_walls
+        else p.every,
         works=tuple(WORKS[name] for name in p.works if name in WORKS),
         loads=tuple(loads(p)),
     )

@@ -140,8 +140,8 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 
 @dataclass(frozen=True)
 class Stop:
-    """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the force
-    on the opposite wall; every: steps between two looks, 0: rows; walls: that rest from then on."""
+    """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the
+    force on the opposite wall; at_rows: whether rows alone are looked at; walls: that rest from then on."""
 
     value: str
     condition: str
@@ -162,7 +162,11 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
         return Stop(energy, f"< {limit}", after)
     if until.count is not None:
         return Stop('row["particles"]', f"<= {limit}", after)
-    value, opposite, stages = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])', "", p.scene.stages
+    value, opposite, stages = (
+        f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])',
+        "",
+        p.scene.stages,
+    )
     if stages and until.wall == stages.wall:
         axis = next(w.axis for w in p.scene.wall if w.name == stages.wall and isinstance(w, PlateWall))
         value, opposite = (f'abs(row["{name}_force_{axis}"])' for name in (stages.wall, stages.against))

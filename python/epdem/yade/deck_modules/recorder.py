@@ -125,9 +125,10 @@ class Recorder:
         after: int = 0,
         void: Callable[[], float] | None = None,
     ) -> None:
-        """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, looked
-        at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies that rest
-        from then on, where each step is looked at, not each row; void: height of the void in a pressed bed [m], whose loss ends the run
+        """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, which
+        is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
+        that rest from then on, where the condition is looked at in each call, without it in each row; void: height of
+        the void in a pressed bed [m], whose loss ends the run
         with a frame and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
@@ -150,7 +151,8 @@ class Recorder:
             print(f"phase {name} was not ended by its condition")
         if until:
             other = f" {self._other:.10g}" if opposite else ""
-            print(f"phase {name} held at step {self._held if self._held >= 0 else self._end}: {self._value:.10g}{other}")
+            step = self._held if self._held >= 0 else self._end
+            print(f"phase {name} held at step {step}: {self._value:.10g}{other}")
         print(f"phase {name} ended at step {self._end}", flush=True)
 
     def _step(self, fills: Sequence[Fill]) -> None:
