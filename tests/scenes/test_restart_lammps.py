@@ -47,7 +47,7 @@ def moving(**output) -> dict:
         {"name": "rest", "duration": "15 ms", "move": [TURN]},
     ]
     found = parts(wall=[BOX, table, lid, stirrer, gate], fill=[bed], body=[ball | {"phase": "lift"}], phase=phases)
-    return found | {"viscous": {"restitution": 0.5}, "output": {"rows": 60, "particles": 60, "loads": True} | output}
+    return found | {"viscous": {"restitution": 0.9}, "output": {"rows": 60, "particles": 60, "loads": True} | output}
 
 
 def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .plan import Phase, ScenePlan
 
 GAIN = 0.5  # largest n c v/F_0
-COVER = 0.9  # share of a wall that the circles of spheres cover, at most
+COVER = 0.4  # share of a wall that the circles of the spheres in contact with it cover
 TAIL, REACHED = 0.2, 0.05  # of a phase, over which the force is averaged; of the force
 
 
