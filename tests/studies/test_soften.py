@@ -276,3 +276,17 @@ def test_the_sticking_speed_of_a_twin_is_that_of_the_case(tmp_path):
     assert V_s[1] == pytest.approx(V_s[0], rel=1e-8) and V_s[0] > 0.05
     at = [predict(replace(experiment(load(p)), speed=np.array([1.0000001 * V_s[0]]))).e_n[0] for p in (path, soft)]
     assert at[1] == pytest.approx(at[0], rel=1e-8) and 0 < at[0] < 1e-3
+
+
+def test_pressures_of_a_press_fall_with_the_strength_of_its_twin():
+    """At the same density the pressure over the strength is the same."""
+    path = Path(__file__).parents[2] / "cases/press_tablet.toml"
+    data = tomllib.loads(soften(path, 10.0).text)
+    hard = tomllib.loads(path.read_text())
+
+    def number(text):
+        return float(text.split()[0])
+
+    for before, after in zip(hard["scene"]["stages"], data["scene"]["stages"], strict=True):
+        strengths = [number(x["materials"]["powder"]["yield_stress"]) for x in (hard, data)]
+        assert number(after) / strengths[1] == pytest.approx(number(before) / strengths[0], rel=1e-12)

@@ -8,7 +8,8 @@ The sticking speed goes as Gamma^(5/6)/E*^(1/3), so Gamma/k^0.4 keeps it. Then s
 overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of such a contact keep their ratios.
 
 The force of a contact at a speed, its yield force and its pull-off force fall as k^0.4. Forces that a scene prescribes
-fall with them, weight does not.
+fall with them, weight does not. At the same density the pressure of a bed at rest is that of its strength: pressures of
+a press, and forces without weight, fall as k^0.8.
 
 The overlap of first yield goes as (p_y/E*)^2: yield_ratio k^0.4. The constraint of a hardness depends on E/Y, so that a
 hardness becomes the yield_ratio of the same strength.
@@ -114,7 +115,13 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
     if "rate" in data:
         reference = data["rate"].get("reference", f"{Rate.model_fields['reference'].default} 1/s")
         texts["rate", "reference"] = _scaled(reference, factor**-STRAIN_POWER)
-    texts |= {key: _scaled(force, factor**-FORCE_POWER) for key, force in _forces(data)}
+    resting = data.get("scene", {}).get("gravity", "9.81").split()[0]
+    power = FORCE_POWER if float(resting) else STRENGTH_POWER  # no impact drives a bed without weight
+    texts |= {key: _scaled(force, factor**-power) for key, force in _forces(data)}
+    for keys in (("scene", "stages"), ("measured", "pressures")):
+        pressures = data.get(keys[0], {}).get(keys[1])
+        if isinstance(pressures, list):
+            texts |= {(*keys, n): _scaled(x, factor**-STRENGTH_POWER) for n, x in enumerate(pressures)}
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
     return texts | {("case", "name"): name}
 
@@ -124,7 +131,7 @@ def _change(document: tomlkit.TOMLDocument, data: Any, keys: Key, after: str | f
     table: Any = document
     for key in keys[:-1]:
         table, data = table[key], data[key]
-    before = data.get(keys[-1], "the default")
+    before = data.get(keys[-1], "the default") if isinstance(data, dict) else data[int(keys[-1])]
     if keys[-1] == "yield_ratio" and "hardness" in table:
         before = f"hardness = {table.pop('hardness')}"
     table[keys[-1]] = after
@@ -153,8 +160,9 @@ def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
     scene, fall, found = scenes.parse(data, path).parts, factor**FORCE_POWER, []
     if any(isinstance(move, LinearMove) for phase in scene.phase for move in phase.move):
         found.append(
-            "a wall that moves with a given velocity compresses the same way: its forces and stresses scale with the "
-            "modulus, not with the real material"
+            "a wall that moves with a given velocity compresses the same way: where spheres yield, its forces and "
+            f"stresses fall with the strength, by a factor of {factor**STRENGTH_POWER:.3g} (k^{STRENGTH_POWER:g}); "
+            f"springback grows by a factor of {factor**STRAIN_POWER:.3g} (k^{STRAIN_POWER:g})"
         )
     if scene.gravity:
         found.append(
