@@ -189,6 +189,10 @@ def stop_condition(
         formula, sign = "ke/(atoms+(atoms==0))+1e99*(atoms==0)", "<"  # a room without spheres waits for them
     elif until.count is not None:
         formula, sign = "atoms", "<="
+    elif not run.stops:  # what shakes or is driven: the mean of a row
+        load = f"f_load{1 + p.measured_walls.index(until.wall or '')}"
+        formula = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")"
+        sign = ">=" if until.force else "<="
     else:
         name, stages, opposite = until.wall or "", p.scene.stages, ""
         formula = "sqrt(" + "+".join(f"{force(name, k)}*{force(name, k)}" for k in (1, 2, 3)) + ")"
@@ -209,7 +213,7 @@ def stop_condition(
             every=p.every,
             nears=True,
             opposite=opposite,
-            stop=tuple(stop) if run.stops else (),
+            stop=tuple(stop),
         )
     rows, condition = (run.steps - first) // p.every, f"{sign} {number(until.limit)}"
     return StopCondition(first, rows, formula, condition, void, until.limit, p.every, p.every)

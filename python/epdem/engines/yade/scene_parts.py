@@ -172,9 +172,11 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
         value, opposite = (f'abs(row["{name}_force_{axis}"])' for name in (stages.wall, stages.against))
         if until.force:  # a sphere that strikes the punch alone is no pressure
             value += f" * ({opposite} >= {decks.number(BORNE * until.limit)})"
+    if not run.stops:  # what shakes or is driven: the mean of a row
+        return Stop(value, f"{'>=' if until.force else '<='} {limit}", after)
     near = until.limit * (1.0 - MISS if until.force else 1.0 + MISS)
     condition = f"{'>=' if until.force else '<='} {decks.number(near)}"
-    return Stop(value, condition, after, opposite, False, tuple(run.moves) if run.stops else ())
+    return Stop(value, condition, after, opposite, False, tuple(run.moves))
 
 
 def void(p: ScenePlan, phase: str) -> str:
