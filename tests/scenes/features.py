@@ -181,6 +181,7 @@ FIRST, SECOND = {"name": "first", "duration": "6 ms"}, {"name": "second", "durat
 LINEAR = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
 VIBRATE = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "0.2 mm"], "frequency": "300 Hz"}
 TURN = {"wall": "lid", "kind": "rotate", "axis": [0, 0, 1], "origin": ["1 mm", "0 mm", "0 mm"], "rate": "60 rpm"}
+TILT = TURN | {"axis": [1, 0, 0], "rate": "-60 rpm"}
 PRESS = {"wall": "lid", "kind": "press", "direction": [0, 0, -1], "force": "10 mN", "highest_speed": "0.1 m/s"}
 PHASES = {
     "rest": [{}, {}],
@@ -188,6 +189,7 @@ PHASES = {
     "wall vibrates": [{"move": [VIBRATE]}, {"move": [VIBRATE]}],
     "wall presses": [{}, {"move": [PRESS]}],
     "wall turns": [{"move": [TURN]}, {}],
+    "wall moves, then tilts": [{"move": [LINEAR]}, {"move": [TILT]}],
     "wall turns, then moves": [{"move": [TURN]}, {"move": [LINEAR]}],
     "until a way": [{"until": {"wall": "lid", "travel": "0.3 mm"}, "move": [LINEAR]}, {}],
     "until a lower force": [{"until": {"wall": "lid", "force_below": "5 mN", "after": "1 ms"}}, {"move": [LINEAR]}],

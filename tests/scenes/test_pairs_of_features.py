@@ -45,7 +45,9 @@ def with_key(key):
 
 
 ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
-NOT_LINEAR = {"phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves"}}
+NOT_LINEAR = {
+    "phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves", "wall moves, then tilts"}
+}
 OF_ROWS = {"none", "force", "side force", "torque", "whole torque"}
 BOTH_MATERIALS_OF_WALLS = {
     "mixture": {"two materials"},
@@ -364,10 +366,10 @@ def test_lammps_runs_what_is_drawn(chosen, ranks, folder):
     assert_runs_or_names_liggghts("lammps", chosen, folder, ranks)
 
 
-# left out: round walls, which are triangles in LIGGGHTS; `vibrate`, whose way is of first order in LIGGGHTS
+# left out: round walls, which are triangles in LIGGGHTS
 ALIKE = SLOTS | {
     "walls": {"planes", "planes across x and y", "plates across x and y", "gate", "open box"},
-    "phases": set(SLOTS["phases"]) - {"wall vibrates", "until rest", "until few are left"},
+    "phases": set(SLOTS["phases"]) - {"until rest", "until few are left"},
     "measure": {"none"},
     "output": {"frames"},
 }

@@ -209,11 +209,14 @@ namespace loop = epdem::liggghts::loop;
   original(this, vflag);
 }
 
-/// LIGGGHTS's does not call pre_force through the dynamic linker.
+/// LIGGGHTS's does not call pre_force through the dynamic linker. Walls have their velocities before the first forces
+/// of a run (FixMoveMesh::setup), because a restart file does not hold them.
 [[gnu::visibility("default")]] void FixNeighlistMesh::setup_pre_force(int vflag) {
   static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh15setup_pre_forceEi");
   loop::note_search(lmp);
   original(this, vflag);
+  if (!epdem::liggghts::library_matches(lmp)) return;
+  for (int k = 0; k < modify->n_fixes_style("move/mesh"); ++k) modify->find_fix_style("move/mesh", k)->setup(vflag);
 }
 
 [[gnu::visibility("default")]] void FixNeighlistMesh::handleTriangle(int triangle) {

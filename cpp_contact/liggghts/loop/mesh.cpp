@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fix_contact_history_mesh.h"
+#include "fix_move_mesh.h"
 #include "fix_neighlist_mesh.h"
 #include "kernels/near_spheres.hpp"
 #include "replaced.hpp"
@@ -126,6 +127,18 @@ struct MeshState {
 namespace LAMMPS_NS {
 
 namespace loop = epdem::liggghts::loop;
+
+/// LIGGGHTS gives a wall its velocity in the first step of a run. Contacts are computed before it, too, for output and
+/// after a restart file: a step of no duration gives the velocity and moves nothing.
+[[gnu::visibility("default")]] void FixMoveMesh::setup(int vflag) {
+  static const auto original = loop::next<FixMoveMesh*, int>("_ZN9LAMMPS_NS11FixMoveMesh5setupEi");
+  original(this, vflag);
+  if (!epdem::liggghts::library_matches(lmp) || !epdem::liggghts::Simulation::find(lmp)) return;
+  const double dt = update->dt;
+  update->dt = 0.0;
+  initial_integrate(0);
+  update->dt = dt;
+}
 
 [[gnu::visibility("default")]] void FixWallGran::post_force_primitive(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran20post_force_primitiveEi");

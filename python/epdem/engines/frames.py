@@ -2,6 +2,7 @@
 """The frames that a run of a scene writes, one file for each step: read, and looked through for what is damaged."""
 
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,6 +33,16 @@ class Frames:
             tables.append(_read(self.folder / name.format(step), read))
             tables[-1].insert(0, "step", step)
         return pd.concat(tables, ignore_index=True)
+
+    def whole_at(self, step: int) -> dict[Path, bytes]:
+        """The files of a step that are whole: what a run that goes on there computes before its first step differs."""
+        paths = [(self.folder / name.format(step), read) for name, _, read in self.kinds.values()]
+        found = {}
+        for path, read in paths:
+            with suppress(EngineError):
+                _read(path, read)
+                found[path] = path.read_bytes()
+        return found
 
     def damaged(self, upto: int) -> list[int]:
         """Steps up to `upto` of which a frame is missing or not whole."""

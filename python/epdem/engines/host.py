@@ -99,9 +99,13 @@ class Host(Engine[Any, Any]):
         return found
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        step, lost = choose(Frames(job, folder, self.tables.kinds(job)), folder / self.launcher.OUT)
+        frames = Frames(job, folder, self.tables.kinds(job))
+        step, lost = choose(frames, folder / self.launcher.OUT)
+        written = frames.whole_at(step)
         script = self.resumed.write_resume(job, folder, step)
         self.start(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
+        for path, content in written.items():
+            path.write_bytes(content)
         return self.read(job, folder, without=lost), Resumed(step, lost)
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:

@@ -159,13 +159,15 @@ def touching(p: ScenePlan, raw: pd.DataFrame) -> pd.DataFrame:
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """One row per contact and frame, with all that follows by the law, sorted; SI.
 
-    raw: step, wall, i, j, overlap, delta_max, force on i; i and j are ids of spheres in any order, or j = 0 and `wall`
-    the name of a wall, where the normal is given; with adhesion also whether the bodies are attached, for they may
-    overlap in a dent without a contact; with compaction added_overlap, with which the law's overlaps are larger than
-    those of the spheres, and screening. What is only near is left out.
+    raw: step, wall, i, j, overlap, of a law that yields delta_max, force on i; i and j are ids of spheres in any order,
+    or j = 0 and `wall` the name of a wall, where the normal is given; with adhesion also whether the bodies are
+    attached, for they may overlap in a dent without a contact; with compaction added_overlap, with which the law's
+    overlaps are larger than those of the spheres, and screening. What is only near is left out.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     raw = touching(p, raw)
+    if not p.model.yields:
+        raw = raw.assign(delta_max=raw["overlap"])
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
     turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary

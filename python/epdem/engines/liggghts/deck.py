@@ -101,12 +101,13 @@ def history(m: Model, *, wall: bool = False) -> dict[str, int]:
     return places | {name: begin + growth.index(name) for name in GROWTH if m.compaction}
 
 
-def contact_columns(slots: Collection[int], values: int, vectors: int) -> tuple[int, ...]:
-    """Where a local compute has these numbers of the history, the overlap and `vectors` of force: the vectors stand
-    behind three ids, then `values` of history, the overlap last."""
-    begin = 3 + 3 * vectors
+def contact_columns(slots: Collection[int], values: int, points: int = 0) -> tuple[int, ...]:
+    """Where a local compute has these numbers of the history, the overlap, the force and `points`: the points stand
+    first, then three ids and the force, then `values` of history, the overlap last."""
+    ids = 3 * points
+    begin = ids + 6
     history = (*(begin + slot for slot in slots), begin + values + 1) if slots else (begin + 1,)
-    return (*history, *range(4, begin + 1))
+    return (*history, *range(ids + 4, begin + 1), *range(1, ids + 1))
 
 
 def _refuse_room(p: ScenePlan) -> None:
@@ -213,8 +214,8 @@ def deck(p: ScenePlan) -> SceneDeck:
         work_words=tuple(WORKS[name] for name in p.works),
         history=history(m),
         wall_history=history(m, wall=True),
-        contact_columns=contact_columns(history(m).values(), memory(m), 1),
-        wall_contact_columns=contact_columns(history(m, wall=True).values(), memory(m, wall=True), 2),
+        contact_columns=contact_columns(history(m).values(), memory(m)),
+        wall_contact_columns=contact_columns(history(m, wall=True).values(), memory(m, wall=True), points=2),
         row_words=(
             "c_ratio[1]",
             "c_ratio[2]",

@@ -7,8 +7,9 @@ import numpy as np
 import pandas as pd
 
 from ...base.rendering import number, wall_id
-from ...case.walls import CylinderWall, PlaneWall
+from ...case.walls import CylinderWall, PlaneWall, RotateMove
 from ...scenes.plan import ScenePlan
+from ..input_script import torque_origin
 
 WIDE = 3.0  # radius of a cylinder over the largest radius of a sphere: LIGGGHTS divides by zero on the axis
 
@@ -27,7 +28,8 @@ class Primitive:
 class WallLoad:
     """The force on a wall in the rows, of number `number`, and the torque, of all but planes.
 
-    mesh: LIGGGHTS sums both. variables: (name, formula) of each sphere, of which the last three are the torque.
+    mesh: LIGGGHTS sums both. variables: (name, formula), of which the last three are the torque: of each sphere, and of
+    a mesh that moves from its place.
     """
 
     number: int
@@ -76,13 +78,31 @@ def primitives(p: ScenePlan) -> tuple[Primitive, ...]:
 def loads(p: ScenePlan) -> tuple[WallLoad, ...]:
     """The sums of the forces on the walls that the rows name."""
     round_ = tubes(p)
-    return tuple(
-        WallLoad(n, wall_id(name), name in p.scene.meshes and name not in round_, _torque(n, round_.get(name)))
-        for n, name in enumerate(p.measured_walls, 1)
-    )
+    found = []
+    for n, name in enumerate(p.measured_walls, 1):
+        mesh = name in p.scene.meshes and name not in round_
+        moved = zip("xyz", torque(p, name), strict=True) if mesh and _leaves(p, name) else ()
+        variables = tuple((f"torque_{axis}_{name}", formula) for axis, formula in moved)
+        found.append(WallLoad(n, wall_id(name), mesh, variables or _torque_of_tube(n, round_.get(name))))
+    return tuple(found)
 
 
-def _torque(n: int, w: CylinderWall | None) -> tuple[tuple[str, str], ...]:
+def _leaves(p: ScenePlan, name: str) -> bool:
+    """Whether a mesh moves otherwise than about its one axis, so that LIGGGHTS takes the point of its torque along."""
+    return any(name in phase.moves and not isinstance(phase.moves[name], RotateMove) for phase in p.phases)
+
+
+def torque(p: ScenePlan, name: str) -> list[str]:
+    """Formulas of the torque on a mesh about the place of its torque."""
+    f = [f"f_{wall_id(name)}[{k}]" for k in range(1, 10)]  # force, torque about a point, the point
+    if not _leaves(p, name):
+        return f[3:6]
+    arm = [f"({at}-{number(o)})" for at, o in zip(f[6:], torque_origin(p, name), strict=True)]
+    turns = [((k + 1) % 3, (k + 2) % 3) for k in range(3)]
+    return [f"{f[3 + k]}+{arm[a]}*{f[b]}-{arm[b]}*{f[a]}" for k, (a, b) in enumerate(turns)]
+
+
+def _torque_of_tube(n: int, w: CylinderWall | None) -> tuple[tuple[str, str], ...]:
     """Torque of the force on a sphere at the point of the cylinder that it touches, about the origin of the room."""
     if w is None:
         return ()

@@ -26,7 +26,7 @@ from ..input_script import (
     taken_places,
     torque_origin,
 )
-from .primitives import Primitive, primitive, tubes
+from .primitives import Primitive, primitive, torque, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
@@ -81,7 +81,7 @@ class DeckPhase:
 
     steps: remaining ones. gates: planes that come with the phase. bodies: file of the single spheres that come with it,
     "": none do; places: formulas of the spheres that lie in their places. power: formula of the power of what moves.
-    vibrations: (wall, formula of the angle at the begin of the phase) of each vibration whose power is counted.
+    vibrations: (variable, formula) of walls that vibrate.
     restart_commands: where a restart file is due.
     """
 
@@ -226,7 +226,7 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
             period = decks.number(2 * math.pi / abs(move.rate))
             words = f"rotate origin {_words(move.origin)} axis {axis} period {period}"
         case VibrateMove():
-            words = f"wiggle amplitude {_words(move.amplitude)} period {decks.number(2 * math.pi / move.omega)}"
+            words = "linear/variable " + " ".join(f"v_speed_{axis}_{name}" for axis in "xyz")
         case PressMove():
             return f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
     return f"fix move_{name} all move/mesh mesh {wall} {words}", f"unfix move_{name}"
@@ -278,22 +278,27 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
             places=taken_places(p, run.name, "r"),
             power=power(p, run) if with_power else "",
-            vibrations=tuple(_angles(before, run, new)) if with_power else (),
+            vibrations=tuple(_vibrations(before, run, new)),
             stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop),
         )
         found.append(part)
     return tuple(found)
 
 
-def _angles(before: Phase | None, phase: Phase, new: list[str]) -> list[tuple[str, str]]:
-    """(wall, formula of the angle [rad] at the begin of a phase) of each wall that vibrates in it."""
-    found = []
+def _vibrations(before: Phase | None, phase: Phase, new: list[str]) -> Iterator[tuple[str, str]]:
+    """Variables of each wall that vibrates in a phase: angle [rad] and step at its begin, and the speeds [m/s] with
+    which each step ends where the vibration is (LIGGGHTS's `wiggle` adds up speeds, which is off at first order)."""
     for name, move in phase.moves.items():
         if isinstance(move, VibrateMove):
             rate = decks.number(move.omega * before.time_step) if before else ""
             so_far = f"${{angle_{name}}}+(${{now}}-${{begin_{name}}})*{rate}"
-            found.append((name, "0.0" if name in new else so_far))
-    return found
+            yield f"angle_{name}", "0.0" if name in new else so_far
+            yield f"begin_{name}", "${now}"
+            turn = move.omega * phase.time_step
+            mean = 2.0 * math.sin(0.5 * turn) / phase.time_step
+            cosine = f"cos(${{angle_{name}}}+(step-${{begin_{name}}}-0.5)*{decks.number(turn)})"
+            for axis, amplitude in zip("xyz", move.amplitude, strict=True):
+                yield f"speed_{axis}_{name}", f"{decks.number(mean * amplitude)}*{cosine}" if amplitude else "0.0"
 
 
 def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
@@ -345,7 +350,8 @@ def power(p: ScenePlan, phase: Phase) -> str:
         id, move = decks.wall_id(name), phase.moves.get(name)
         for rotation in (surface_rotation(mesh), move):
             if isinstance(rotation, RotateMove):
-                terms += _times(id, 4, [rotation.rate * x for x in rotation.axis])
+                of_axis = zip(torque(p, name), rotation.axis, strict=True)
+                terms += [f"({words})*{decks.number(rotation.rate * x)}" for words, x in of_axis if x]
         if isinstance(move, LinearMove):
             terms += _times(id, 1, move.velocity)
         if isinstance(move, PressMove):

@@ -24,6 +24,8 @@ from .primitives import overlaps, tubes, walls
 COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "normal_stress"}
 COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 
+# of a contact with a triangle: where it is, and the centre of the sphere [m]
+POINTS = [f"{x}_{point}" for point in ("contact", "sphere") for x in "xyz"]
 END = "end.bin"  # dump of impacts at their end
 
 
@@ -68,10 +70,10 @@ def _meshes(p: ScenePlan) -> list[str]:
 
 def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres; contacts between them and with walls of triangles, which have the columns of the
-    law, the overlap [m], the force [N] on the first body and, at walls, the normal; stresses on triangles."""
+    law, the overlap [m], the force [N] on the first body and, at walls, the points POINTS; stresses on triangles."""
     found: Kinds = {"particles": ("particles.{}.bin", p.frames, partial(_frame, names=_particle_names(p)))}
     values, meshes = [*history(p.model), "overlap", *columns.FORCE], _meshes(p)
-    pairs, touched = ["i", "j", *values], [*["mesh"] * (len(meshes) > 1), "i", *values, *columns.NORMAL]
+    pairs, touched = ["i", "j", *values], [*["mesh"] * (len(meshes) > 1), "i", *values, *POINTS]
     found["contacts"] = "contacts.{}.txt", p.contacts, partial(_local, names=pairs)
     found["wall_contacts"] = "wall_contacts.{}.txt", p.contacts * (len(meshes) > 0), partial(_local, names=touched)
     for name in p.stress_walls:
@@ -118,14 +120,11 @@ def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     if names := _meshes(p):
         touched = frames.table("wall_contacts")
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
-        length = np.linalg.norm(touched[columns.NORMAL], axis=1)  # of the normal force: 0 without force
-        touched[columns.NORMAL] = touched[columns.NORMAL].div(np.where(length > 0.0, length, 1.0), axis=0)
-        parts.append(touched.assign(j=0, wall=wall))
+        off = touched[POINTS[3:]].to_numpy() - touched[POINTS[:3]].to_numpy()
+        touched[columns.NORMAL] = off / np.linalg.norm(off, axis=1, keepdims=True)
+        parts.append(touched.drop(columns=POINTS).assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-    raw = raw if p.model.yields else raw.assign(delta_max=raw["overlap"])
-    found = columns.complete(p, raw, spheres, frames.folder)
-    found.loc[found["wall"].isin(names) & (found["force"] < 0.0), columns.NORMAL] *= -1.0  # attraction
-    return found
+    return columns.complete(p, raw, spheres, frames.folder)
 
 
 def _fields(path: Path) -> dict[str, np.ndarray]:

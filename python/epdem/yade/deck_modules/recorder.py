@@ -107,6 +107,7 @@ class Recorder:
         self._opposite: Callable[[dict[str, float]], float] | None = None
         self._stops: Sequence[int] | None = None
         self._held, self._value, self._other = -1, 0.0, 0.0  # step at which the condition held, what it held at
+        self._came = 0  # spheres at the end of the phase before
         self._void: Callable[[], float] | None = None
         self._looked = 0
         self._reached, self._solid = False, False  # whether the condition holds, whether the bed has lost its void
@@ -140,13 +141,14 @@ class Recorder:
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
+            self._came = self.spheres.came
             return
         while O.iter <= self._end and not self._reached:
             self._step(fills)
             if self._solid:
                 print(f"phase {name} left no void\nphase {name} ended at step {O.iter - 1}", flush=True)
                 raise SystemExit
-        self._end = O.iter - 1
+        self._end, self._came = O.iter - 1, self.spheres.came
         if until and not self._reached:
             print(f"phase {name} was not ended by its condition")
         if until:
@@ -158,6 +160,9 @@ class Recorder:
     def _step(self, fills: Sequence[Fill]) -> None:
         for fill in fills:
             fill.pour(O.iter - self._begin)
+        for state in self.spheres.new:  # YADE keeps velocities of half a step before
+            state.vel = np.array(tuple(state.vel)) - 0.5 * O.dt * self.gravity
+        self.spheres.new.clear()
         O.step()
 
     def finish(self) -> None:
@@ -224,10 +229,16 @@ class Recorder:
         speed = np.array([tuple(s.vel) for s in self.spheres.states]).reshape(-1, 3)
         return speed + free * 0.5 * O.dt * (force / mass + self.gravity)
 
+    def shown(self) -> Any:
+        """(n,) whether a sphere is of the phase of this step: at the end of a phase those of the next one are not."""
+        ended = 0 < O.iter == self._begin
+        return self.spheres.table[:, 0] <= (self._came if ended else np.inf)
+
     def row(self) -> None:
         """Print step, spheres in the room, kinetic energy of their motion [J], largest strain so far, mean loads."""
-        v = self.velocities()
-        energy = float(0.5 * self.spheres.table[:, 3] @ (v * v).sum(axis=1))
+        there = self.shown()
+        v = self.velocities()[there]
+        energy = float(0.5 * self.spheres.table[there, 3] @ (v * v).sum(axis=1))
         means = self._sums / max(1, self._samples)
         found = [len(v), energy, *self.strain(), *means.tolist()]
         self.values = dict(zip(self.names, found, strict=True))
@@ -246,7 +257,7 @@ class Recorder:
         columns += [np.array([getattr(s, name) for s in states]) for name in self.works]
         if "frictionWork" in self.works:
             columns.append(self.friction_energy())
-        np.save(self.folder / f"particles.{O.iter}.npy", np.column_stack(columns))
+        np.save(self.folder / f"particles.{O.iter}.npy", np.column_stack(columns)[self.shown()])
         if self.triangles.volume:
             np.save(self.folder / f"triangles.{O.iter}.npy", self.triangles.table())
 
@@ -275,6 +286,7 @@ class Recorder:
     def contact_table(self) -> None:
         """Write every contact, bodies by number. Overlap 0: the bodies have separated since the last table."""
         number, gone, width = self.spheres.number, self.spheres.gone, 13 if self.law.compaction else 11
+        gone = gone | {k for k, there in zip(self.spheres.ids, self.shown(), strict=True) if not there}
         here = [row[:width] for row in self.contacts() if gone.isdisjoint(row[:2])]
         rows = np.array([(number[a], number[b], *values) for a, b, *values in here], float)
         rows = rows.reshape(-1, width)

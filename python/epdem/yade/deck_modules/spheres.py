@@ -41,6 +41,7 @@ class Spheres:
         self.ids: list[int] = []  # bodies
         self.states: list[Any] = []
         self.table = np.zeros((0, 5))  # number from 1, type, radius [m], mass [kg], 1: not frozen
+        self.new: list[Any] = []  # states of free spheres that have made no step
 
     def add(self, rows: Iterable[Sequence[float]]) -> None:
         """Add spheres: x, y, z, radius [m], type, velocity [m/s], spin [rad/s], 1: frozen."""
@@ -50,6 +51,8 @@ class Spheres:
             body.state.vel, body.state.angVel = motion[:3], motion[3:]
             self.ids.append(O.bodies.append(body))
             self.states.append(body.state)
+            if not frozen:
+                self.new.append(body.state)
             self.number[self.ids[-1]] = self._came
             self._came += 1
             new.append((self._came, kind, radius, body.state.mass, not frozen))
@@ -60,6 +63,11 @@ class Spheres:
         ids: list[int] = O.bodies.append(bodies)
         self.number |= dict.fromkeys(ids, number)
         return ids
+
+    @property
+    def came(self) -> int:
+        """Number of the spheres that have come."""
+        return self._came
 
     def positions(self) -> Any:
         """(n, 3) [m]."""

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls that moved before: loads, power, normals, velocities and restarts, of one sphere or some on a plate."""
+
+import numpy as np
+import pytest
+from parts_cases import BED, parts
+from scene_runs import run, write_case
+
+from engines.lammps_decks import needs_lammps
+from epdem.base.files import write_texts
+from epdem.case.scene import parse
+from epdem.engines import scene_engine
+from epdem.engines.restarts import restart_files
+from epdem.jobs.engine import silent
+from epdem.scenes.plan import plan
+
+LIGGGHTS = pytest.param("liggghts", marks=pytest.mark.liggghts)
+YADE = pytest.param("yade", marks=pytest.mark.yade("module"))
+LAMMPS = pytest.param("lammps", marks=needs_lammps)
+ROOM = {"x": ["-20 mm", "20 mm"], "y": ["-20 mm", "20 mm"], "z": ["-5 mm", "40 mm"]}
+PLATE = {"name": "plate", "kind": "plate", "axis": "z", "material": "steel", "size": ["14 mm", "15 mm"]}
+PLATE |= {"center": ["0 mm", "0 mm", "0 mm"]}
+X, Y, RADIUS = 3e-3, -1e-3, 1e-3  # of the ball [m]
+BALL = {"name": "ball", "material": "glass", "radius": "1 mm", "position": ["3 mm", "-1 mm", "0.9999 mm"]}
+WEIGHT = 9.81 * 2500 * 4 / 3 * np.pi * RADIUS**3  # [N]
+ASIDE = {"wall": "plate", "kind": "linear", "velocity": ["0.5 m/s", "0 m/s", "0 m/s"]}
+
+
+def one_ball(*phases: dict, ball: dict = BALL, restitution: float = 0.3, step: str = "2e-6 s", **tables: dict) -> dict:
+    """A sphere on a plate; phases: of 5 ms."""
+    named = [{"name": f"phase{n}", "duration": "5 ms"} | phase for n, phase in enumerate(phases)]
+    data = parts(room=ROOM, wall=[PLATE], fill=[], body=[ball], phase=named)
+    return data | {"numerics": {"time_step": step}, "viscous": {"restitution": restitution}} | tables
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, LAMMPS, YADE])
+def test_the_torque_on_a_plate_is_about_a_place_at_rest(engine, tmp_path):
+    """The weight of a smooth sphere that rests while the plate slides away below it: r x F about 0."""
+    outcome = run(write_case(one_ball({"move": [ASIDE]}, {}), tmp_path), engine, out=tmp_path / "out")
+    row = outcome.results.rows.iloc[-1]
+    assert row["plate_force_z"] == pytest.approx(-WEIGHT, rel=1e-3)
+    expected = [-WEIGHT * Y, WEIGHT * X, 0.0]
+    assert [row[f"plate_torque_{x}"] for x in "xyz"] == pytest.approx(expected, abs=1e-3 * WEIGHT * X)
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, YADE])
+def test_a_plate_that_tilts_after_a_way_gives_its_work(engine, tmp_path):
+    """It lifts the sphere by its turn times the arm."""
+    tilt = {"wall": "plate", "kind": "rotate", "axis": [0, 1, 0], "rate": "-4 rad/s"}
+    data = one_ball({"move": [ASIDE]}, {"move": [tilt]}, restitution=0.999, contact={"friction": 0.3})
+    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    balance = outcome.results.energy_balance
+    lifted = WEIGHT * 4 * 5e-3 * X
+    work = balance["work"].iloc[-1] - balance["work"][balance["step"] <= outcome.plan.phases[0].end].iloc[-1]
+    assert work == pytest.approx(lifted, rel=0.2)  # it rolls, and has a speed at the end
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, LAMMPS, YADE])
+def test_the_normal_of_a_plate_is_geometry(engine, tmp_path):
+    """Of a sphere that a plate pulls up by adhesion, beside one that a dashpot slows: also where forces change sign."""
+    up = {"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.02 m/s"]}
+    ball = BALL | {"position": ["3 mm", "-1 mm", "-0.9999 mm"]}
+    law = {"name": "jkr", "work_of_adhesion": "0.5 J/m^2"}
+    data = one_ball({"move": [up]}, ball=ball, law=law, output={"rows": 40, "particles": 40, "contacts": 40})
+    contacts = run(write_case(data, tmp_path), engine, out=tmp_path / "out").results.contacts
+    assert contacts["step"].min() == 0 and len(contacts) > 40
+    assert (contacts["force"] < 0).any() and (contacts["force"] > 0).any()
+    normals = contacts[["normal_x", "normal_y", "normal_z"]].to_numpy()
+    assert normals == pytest.approx(np.tile([0.0, 0.0, -1.0], (len(contacts), 1)), abs=1e-9)
+
+
+@pytest.mark.liggghts
+@needs_lammps
+def test_vibrating_walls_are_the_same_in_liggghts_and_lammps(tmp_path):
+    """Through phases of two time steps, one of which the motion begins in; rounding alone is left."""
+    shake = {"wall": "plate", "kind": "vibrate", "amplitude": ["0 mm", "0.1 mm", "0.5 mm"], "frequency": "300 Hz"}
+    ball = BALL | {"position": ["3 mm", "-1 mm", "1.05 mm"]}
+    phases = ({"move": [shake]}, {"move": [shake], "time_step": "1.4e-6 s"})
+    data = one_ball(*phases, ball=ball, contact={"friction": 0.3})
+    path = write_case(data, tmp_path)
+    places = [
+        run(path, engine, out=tmp_path / engine).results.particles[["z", "vx", "vy", "vz"]].to_numpy()
+        for engine in ("liggghts", "lammps")
+    ]
+    assert abs(places[0][:, 3]).max() > 0.5
+    assert places[0] == pytest.approx(places[1], abs=1e-9)
+
+
+def pressed(*moves: dict) -> dict:
+    """A bed under a lid with friction and both dashpots, a phase for each motion and one of rest."""
+    lid = PLATE | {"name": "lid", "center": ["0 mm", "0 mm", "12 mm"], "size": ["17.9 mm", "17.9 mm"]}
+    box = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "39 mm"]}
+    bed = BED | {"count": 60, "region": BED["region"] | {"z": ["0 mm", "11 mm"]}}
+    every = [[{"wall": "lid"} | move] for move in moves] + [[]]
+    phases = [{"name": f"phase{n}", "duration": "10 ms", "move": move} for n, move in enumerate(every)]
+    data = parts(wall=[box | {"material": "steel"}, lid], fill=[bed], phase=phases) | {"viscous": {"restitution": 0.5}}
+    data |= {"contact": {"friction": 0.3, "tangential_restitution": 0.5}, "numerics": {"time_step": "1e-5 s"}}
+    return data | {"output": {"rows": 16, "particles": 8, "restarts": 8, "contacts": 8}}
+
+
+DOWN = {"kind": "linear", "velocity": ["0.05 m/s", "0 m/s", "-0.3 m/s"]}
+SLOWER = DOWN | {"velocity": ["0 m/s", "0 m/s", "-0.2 m/s"]}
+HELD = {"kind": "press", "direction": [0, 0, -1], "force": "50 mN", "highest_speed": "0.3 m/s"}
+
+
+@pytest.mark.parametrize(
+    ("engine", "moves"),
+    [
+        pytest.param("liggghts", (DOWN, SLOWER, SLOWER), marks=pytest.mark.liggghts),
+        pytest.param("lammps", (DOWN, SLOWER, SLOWER), marks=needs_lammps),
+        pytest.param("lammps", (HELD, HELD), marks=needs_lammps, id="lammps-press"),
+    ],
+)
+def test_a_run_under_a_moving_wall_goes_on_bitwise_with_dashpots(engine, moves, tmp_path):
+    """From every restart file: every table, the frame in which the run goes on included."""
+    tool, p = scene_engine(engine), plan(parse(pressed(*moves)))
+    write_texts(tmp_path, tool.files(p))
+    tool.start(tool.scripts[1], tmp_path, ranks=1)
+    whole = tool.read(p, tmp_path)
+    assert (whole["contacts"]["wall"] == "lid").any()
+    kept = {step: path.read_bytes() for step, path in restart_files(tmp_path) if step < p.steps}
+    assert len(kept) > 5
+    for step, content in kept.items():
+        for other in kept:
+            (tmp_path / f"restart.{other}.bin").unlink(missing_ok=True)
+        (tmp_path / f"restart.{step}.bin").write_bytes(content)
+        again, resumed = tool.resume(p, tmp_path, ranks=1, report=silent)
+        assert resumed.step == step
+        for name, table in whole.items():
+            assert table.equals(again[name]), f"{name} from {step}"
