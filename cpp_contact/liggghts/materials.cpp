@@ -176,8 +176,9 @@ void compare_strength(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Mate
       if (!(share > elastic_share) || strength >= rigid_strength) continue;
       const char* const name = law.parameters[law.strength].property;
       return say_once(lmp, "epdem: " + law.model + ": " + name + " of " + both(i, j) + " is " + number(share) +
-                               " E*, above " + number(elastic_share) +
-                               " E*: the contacts stay elastic; give youngsModulus its real value");
+                               " E*, above " + number(elastic_share) + " E*: the contacts are elastic " +
+                               (share < 1.0 ? "up to an overlap of 2.5 % of R* or more" : "at any overlap") +
+                               "; give youngsModulus its real value");
     }
 }
 

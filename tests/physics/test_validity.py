@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.theory import restitution, validity
+from epdem.theory import pair, restitution, validity, yielding
 from epdem.theory.backbones import LAWS, Cavity, Hertz, Johnson, Thornton
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
@@ -86,6 +86,35 @@ def test_the_deviation_at_each_limit_is_that_from_the_finite_strain_branch(limit
     v_y0 = (np.pi / (2 * STEEL["E_star"])) ** 2 * np.sqrt(8 * np.pi * 0.01**3 * (1.6 * Y) ** 5 / (15 * M))
     high = 2.069 * (v / v_y0) ** -0.25 / (0.62 * (v / v_y0 * Y / STEEL["E_star"]) ** -0.5) - 1
     assert round(100 * high) == validity.FINITE_STRAIN[limit]
+
+
+@pytest.mark.parametrize(("ratio", "at", "percent"), [(120, 0.3, 8), (300, 0.3, 6), (120, 0.5, 20), (300, 0.5, 20)])
+def test_finite_strain_overestimates_the_restitution_of_the_same_branch_as_its_warning_says(ratio, at, percent):
+    """E/Y = ratio, nu = 0.3, a rigid plane: share 1."""
+    Y, E_star = 1e9, ratio * 1e9 / (1 - 0.3**2)
+    law = Cavity(E_star=E_star, R_star=0.01, Y=Y, c_strain=0.82, share=1.0)
+    v_y0 = yielding.yield_speed(p_y=1.6 * Y, E_star=E_star, R_star=0.01, m_star=M)
+    hits = restitution.impact(law, m_star=M, speed=v_y0 * np.geomspace(20, 2e4, 2000))
+    over = hits.e_n / (0.62 * (np.geomspace(20, 2e4, 2000) * Y / E_star) ** -0.5)
+    assert round(100 * (np.interp(at, hits.radius_max / 0.01, over) - 1)) == pytest.approx(percent, abs=0.6)
+    assert "by 6 to 8 % at 0.3 and by 20 % at 0.5" in validity.SOFTENED
+
+
+def test_a_hard_ball_on_a_softer_wall_has_no_strain_and_no_warning():
+    """l = 0: the plane has no curvature to flatten, and finite_strain changes e_n by less than 0.5 % there."""
+    hard, soft = np.inf, 1e9
+    one = float(pair.strain_share(hard, soft))
+    assert pair.curvature_share(one, R_star=0.01, R1=0.01) == 0.0
+    assert validity.finite_strain_of_impacts(np.array([0.0]), np.array([50.0])) == []
+
+
+@pytest.mark.parametrize("ratio", [30, 120, 1000])
+def test_finite_strain_does_not_change_the_speed_of_first_yield(ratio):
+    """The pressure of the softer body at its first yield, 1.60 Y, is below the largest pressure of its contact."""
+    numbers = {"E_star": ratio * 1e9, "R_star": 0.01, "Y": 1e9}
+    one, other = (Cavity(**numbers, c_strain=c, share=1.0) for c in (None, 0.82))
+    speeds = [float(yielding.first_yield_speed(law, 1e9, m_star=M)) for law in (one, other)]
+    assert np.isfinite(speeds[1]) and speeds[1] == pytest.approx(speeds[0], rel=1e-9)
 
 
 def over_measured(name, v):

@@ -100,7 +100,7 @@ class Experiment:
         try:
             self.theory()
         except (ValueError, ArithmeticError) as error:
-            given = ", ".join(f"law.{name} = {value:g}" for name, value in self.law.parameters.items())
+            given = ", ".join(f"law.{name} = {value:g}" for name, value in self.law.shown().items())
             raise CaseError(f"{given}: {error}") from None
 
     def friction_of_oblique(self) -> Oblique:

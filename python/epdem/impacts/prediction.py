@@ -76,6 +76,8 @@ def predict(experiment: Experiment) -> Prediction:
         if b.yield_stress is not None and not b.rigid
     }
     strain = x.law.share * impact.radius_max / x.R_star
+    flattening = x.law.strain_curvature(x.R_star, x.body.radius) * impact.radius_max / x.R_star
+    effect = validity.SOFTENED if "finite_strain" in x.law.ratios() else validity.OVERESTIMATED
     waves = _wave_share(x)
     return Prediction(
         **vars(impact),
@@ -91,7 +93,7 @@ def predict(experiment: Experiment) -> Prediction:
             *_radiating(x, waves),
             *_surface_yield(x),
         ),
-        finite_strain=tuple(validity.finite_strain_of_impacts(strain, x.speed)),
+        finite_strain=tuple(validity.finite_strain_of_impacts(flattening, x.speed, effect)),
         wave_share=waves,
         observation_time=law.observation_time(**pair),
     )

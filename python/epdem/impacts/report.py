@@ -191,7 +191,7 @@ def predictions(
         {
             "case": x.name,
             "law": x.law.name,
-            "parameters": x.law.parameters,
+            "parameters": x.law.shown(),
             "yields": p.yields,
             "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
             "warnings": [*warnings, *p.warnings],

@@ -96,6 +96,11 @@ class LawSpec:
         own = {} if strength is None else {strength: min(body, target)}
         return replace(self, parameters=self.parameters | own, strengths=(body, target))
 
+    def shown(self) -> dict[str, float]:
+        """The parameters for readers: without finite_strain where it is off."""
+        hidden = {"finite_strain"} - {*self.ratios()}
+        return {name: value for name, value in self.parameters.items() if name not in hidden}
+
     @property
     def share(self) -> float:
         """Share of the weaker body in the strain: 1/2 of bodies of equal strength, 1 if the other one never yields."""
@@ -108,6 +113,10 @@ class LawSpec:
         """
         one = self._first_share if "finite_strain" in self.ratios() else 0.5
         return curvature_share(one, R_star=R_star, R1=radius)
+
+    def strain_curvature(self, R_star: Real, radius: Real) -> Array:
+        """l of the strain l a/R* of contacts of these R_star and radii of body i [m] (`pair.curvature_share`)."""
+        return curvature_share(self._first_share, R_star=R_star, R1=radius)
 
     @property
     def _first_share(self) -> float:

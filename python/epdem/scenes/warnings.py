@@ -78,7 +78,8 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
         for phase in phases[phases["until"] == NO_VOID].head(1).to_dict("records")
     ]
     pressing = stages.warnings(p, tables) if "stages" in tables else []
-    effect = PRESSED if p.model.compaction else validity.OVERESTIMATED
+    softens = "finite_strain" in p.model.ratios()
+    effect = PRESSED if p.model.compaction else validity.SOFTENED if softens else validity.OVERESTIMATED
     others = [*servo.not_reached(p, tables["rows"]), *flow_warnings(p, tables)]
     return [*validity.finite_strain(largest, where, effect), *no_void, *pressing, *others] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "

@@ -158,7 +158,7 @@ def impacts_table(outcome: Outcome) -> Rows:
 def _impact_facts(x: Experiment) -> dict[str, str]:
     facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
     units = {p.name: p.unit for p in find_law(x.law.name).parameters if p.unit != "1"}
-    facts |= {name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in x.law.parameters.items()}
+    facts |= {name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in x.law.shown().items()}
     facts |= {"E*": f"{x.E_star:.6g} Pa", "R*": f"{x.R_star:.6g} m", "m*": f"{x.m_star:.6g} kg"}
     v_y0 = charts.first_yield(x)
     facts |= {"speed of first yield (8.84, 1.60 Y)": f"{v_y0:.4g} m/s"} if v_y0 == v_y0 else {}

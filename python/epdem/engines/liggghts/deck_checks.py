@@ -16,7 +16,7 @@ from ...errors import CaseError
 from .own_decks import HYSTERESIS, commands, number, variable
 
 LARGEST_RATIO = 10.0  # of adhesion stiffness over loading stiffness; of materials below 1
-LARGEST_STRENGTH = 0.1  # of E*, above which contacts stay elastic up to overlaps of 2.5 % of R*
+LARGEST_STRENGTH = 0.1  # of E*, above which contacts are elastic up to overlaps of 2.5 % of R* or more
 RAYLEIGH = 1.0  # largest time step over Rayleigh's time of the smallest sphere
 
 
@@ -137,8 +137,8 @@ def _strength(deck: _Deck) -> Iterator[str]:
             if value < 1e25 and peak * value > LARGEST_STRENGTH * E_star:
                 yield (
                     f"{where}: {name} of type {n} = {value:g} is {value / E_star:.2g} E* (youngsModulus {E:g}): such "
-                    "contacts stay elastic; give the real modulus, or soften the strength with it, by k^0.8 where the "
-                    "modulus has 1/k (epdem soften)"
+                    "contacts are elastic up to an overlap of 2.5 % of R* or more; give the real modulus, or soften the "
+                    "strength with it, by k^0.8 where the modulus has 1/k (epdem soften)"
                 )
 
 
