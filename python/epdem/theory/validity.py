@@ -23,23 +23,24 @@ SOFTENED = (  # of cavity with finite_strain against the same branch, E*/Y = 120
 )
 
 
-def finite_strain(largest: float, where: str = "", effect: str = OVERESTIMATED) -> list[str]:
-    """A sentence for the highest limit that the largest strain l a/R* of contacts exceeds; none below all limits.
+OF_SHARE = "w a/R* (w: share of the weaker body, 1/2 of like bodies, 1 beside a rigid one)"
+OF_CURVATURE = "l a/R* (l: 1/2 for like bodies, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane)"
 
-    l: mean curvature of both bodies, weighted by their shares of the strain, times R* (`pair.curvature_share`).
-    `where`: which part of the results is above the limit; `effect`: what follows from it, in words.
+
+def finite_strain(largest: float, where: str = "", effect: str = OVERESTIMATED, strain: str = OF_SHARE) -> list[str]:
+    """A sentence for the highest limit that the largest `strain` of contacts exceeds; none below all limits.
+
+    The strain is l a/R* (`pair.curvature_share`), or of scenes w a/R* (`pair.strain_share`), which is the same between
+    like bodies. `where`: which part of the results is above the limit; `effect`: what follows from it, in words.
     """
     limit = max((limit for limit in FINITE_STRAIN if largest > limit), default=None)
     if limit is None:
         return []
-    return [
-        "the strain l a/R* (l: 1/2 for like bodies, 1 for a sphere on a rigid plane, 0 for a rigid sphere on a plane) "
-        f"reaches {largest:.2f}, above {limit}{where}: {effect}"
-    ]
+    return [f"the strain {strain} reaches {largest:.2f}, above {limit}{where}: {effect}"]
 
 
 def finite_strain_of_impacts(strain: Array, speed: Array, effect: str = OVERESTIMATED) -> list[str]:
     """`finite_strain` for impacts with the largest strains l a_max/R* at `speed` [m/s], arrays of one shape."""
     limit = max((limit for limit in FINITE_STRAIN if strain.max() > limit), default=np.inf)
     where = f" from {speed[strain > limit].min():.3g} m/s on" if limit < np.inf else ""
-    return finite_strain(strain.max(), where, effect)
+    return finite_strain(strain.max(), where, effect, OF_CURVATURE)

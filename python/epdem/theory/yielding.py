@@ -21,7 +21,7 @@ def first_yield_speed(law: Curve, Y: Real, *, m_star: Real, ratio: Real = FIRST_
     wanted = number("ratio", ratio) * number("Y", Y, infinite=True)
     far = 1e20 * law.R_star  # there the elastic start counts no more
     if np.all(np.isfinite(law.yield_overlap)):  # with finite strain the pressure falls beyond its largest value
-        steps = np.geomspace(1.0, 1e6, 601).reshape(-1, *[1] * np.ndim(law.yield_overlap))
+        steps = np.geomspace(1.0 + 1e-9, 1e6, 601).reshape(-1, *[1] * np.ndim(law.yield_overlap))
         largest = np.argmax(law.pressure_max(law.yield_overlap * steps), axis=0)
         far = law.yield_overlap * steps.ravel()[largest]
     limit = law.pressure_max(far)

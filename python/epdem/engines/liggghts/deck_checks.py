@@ -137,8 +137,8 @@ def _strength(deck: _Deck) -> Iterator[str]:
             if value < 1e25 and peak * value > LARGEST_STRENGTH * E_star:
                 yield (
                     f"{where}: {name} of type {n} = {value:g} is {value / E_star:.2g} E* (youngsModulus {E:g}): such "
-                    "contacts are elastic up to an overlap of 2.5 % of R* or more; give the real modulus, or soften the "
-                    "strength with it, by k^0.8 where the modulus has 1/k (epdem soften)"
+                    "contacts are elastic up to an overlap of 2.5 % of R* or more; give the real modulus, or soften "
+                    "the strength with it, by k^0.8 where the modulus has 1/k (epdem soften)"
                 )
 
 
