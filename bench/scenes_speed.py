@@ -40,7 +40,7 @@ from epdem.scenes.plan import plan
 # processor time over that of hertz, over that with AVX2, and over that of the launcher before
 LIMITS = {
     "settle_glass": (0.45, 0.48, 0.88),
-    "compaction_powder": (0.33, 0.42, 0.92),
+    "compaction_powder": (1.60, 1.80, 0.92),  # growth and screening of dense beds: 0.85 is the goal
     "hopper_beads": (0.50, 0.55, 0.75),
     "drum_beads": (0.36, 0.48, 0.92),
 }
@@ -50,9 +50,12 @@ ENVIRONMENT = {"hertz": {"EPDEM_LOOP": "generic"}, "ep": {}, "ep, AVX2": {"EPDEM
 
 
 def files(case: Path, model: str) -> dict[str, str]:
-    """The deck of a case, a press with thornton, for LIGGGHTS or LAMMPS, or with LIGGGHTS's hertz."""
+    """The deck of a case as it is, for LIGGGHTS or LAMMPS, or with LIGGGHTS's hertz and the same time step."""
     data = read_toml(case)
-    p = plan(parse(data | {"law": {"name": "thornton"}} if data["law"].get("compaction") else data, case))
+    p = plan(parse(data, case))
+    if model == "hertz" and p.model.compaction:  # whose words hertz does not know
+        dry = data | {"law": {"name": "thornton"}, "numerics": {"time_step": f"{p.time_step!r} s"}}
+        p = plan(parse(dry, case))
     if model == LAMMPS:
         return lammps_deck.files(p)
     if model != "hertz":
