@@ -5,6 +5,7 @@ import contextlib
 import copy
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from itertools import repeat
 from typing import TYPE_CHECKING, TypeAlias
 
 from rich.cells import cell_len
@@ -14,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:  # slow to import
+    import numpy as np
     import pandas as pd
 
 Shown: TypeAlias = Table | Text | str  # what `show` prints
@@ -48,14 +50,19 @@ def heads(names: Iterable[object], units: Mapping[str, str]) -> dict[str, str]:
 
 
 def frame_table(
-    title: str, frame: "pd.DataFrame", columns: Mapping[str, str] | None = None, *, digits: int = 5
+    title: str,
+    frame: "pd.DataFrame | Mapping[str, np.ndarray]",
+    columns: Mapping[str, str] | None = None,
+    *,
+    digits: int = 5,
 ) -> Table:
-    """The `columns` (head by name; all without any) of a frame, errors with two digits; red: rows not `passed`."""
+    """The `columns` (head by name; all without any) of a frame or of arrays by name, errors with two digits; red: rows
+    not `passed`."""
     columns = columns or heads(frame, {})
     left = [head for name, head in columns.items() if frame[name].dtype.kind not in "biufc"]
     shown, many = table(title, columns.values(), left=left), [2 if n.endswith("error") else digits for n in columns]
-    passed = frame["passed"] if "passed" in frame else [True] * len(frame)
-    for row, good in zip(frame[[*columns]].itertuples(index=False), passed, strict=True):
+    passed = frame["passed"] if "passed" in frame else repeat(True)
+    for *row, good in zip(*(frame[name] for name in columns), passed, strict=False):
         shown.add_row(*map(cell, row, many), style=None if good else "red")
     return shown
 

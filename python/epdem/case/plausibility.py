@@ -2,14 +2,17 @@
 """Sentences on values that are possible and most often have a wrong unit."""
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from .impact import Case
-from .scene import SceneCase
+
+if TYPE_CHECKING:  # imports templates and tables, which impacts do not need
+    from .scene import SceneCase
 
 Value = tuple[str, float | None, str, float, float]  # place, value, its unit, the usual least and largest value
 
 
-def _values(case: Case | SceneCase) -> Iterator[Value]:
+def _values(case: "Case | SceneCase") -> Iterator[Value]:
     for name, m in case.materials.items():
         yield f"materials.{name}.young_modulus", m.young_modulus, " Pa", 1e5, 1.3e12  # rubber foam to diamond
         yield f"materials.{name}.density", m.density, " kg/m^3", 100.0, 25_000.0  # foam to osmium
@@ -27,7 +30,7 @@ def _values(case: Case | SceneCase) -> Iterator[Value]:
     yield from ((place, mu, "", 0.0, 5.0) for place, mu in frictions.items())  # of clean metals in vacuum
 
 
-def case_warnings(case: Case | SceneCase) -> list[str]:
+def case_warnings(case: "Case | SceneCase") -> list[str]:
     """A sentence for each value that is probably in another unit than its author meant."""
     return [
         f"{place} = {x:g}{unit}, usually {least:g} to {largest:g}; {'is the unit right?' if unit else 'percent?'}"

@@ -44,7 +44,7 @@ def predict(
     from ..case.toml import error_context
     from ..impacts.experiment import experiment, one_impact
     from ..impacts.prediction import predict as predict_experiment
-    from ..impacts.report import predictions
+    from ..impacts.prediction_report import predictions
 
     warnings: list[str] = []
     if case is None:

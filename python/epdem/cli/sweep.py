@@ -92,7 +92,7 @@ def status(
     as_json: AsJson = False,
 ) -> None:
     """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
-    from ..impacts.report import plain
+    from ..impacts.prediction_report import plain
     from ..studies.sweep import folder as store
     from ..studies.sweep.slurm import status as ask
     from ..studies.sweep.table import write

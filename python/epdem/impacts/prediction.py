@@ -2,10 +2,9 @@
 """The prediction of theory for an experiment."""
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from ..laws.strengths import find_law
 from ..theory import validity
@@ -16,6 +15,9 @@ from ..theory.waves import energy_split
 from ..theory.yielding import yield_speed
 from . import oblique
 from .experiment import Experiment, strain_rate
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 FASTEST = 1e4  # strain rate [1/s] up to which the strength of metals grows with its logarithm
 LARGEST_WAVE_SHARE = 0.05  # above it e_n of real impacts is noticeably lower than that of any law of force
@@ -52,10 +54,16 @@ class Prediction(Impact):
         """Times of observation [s]: of contact, and of bodies that stick `observation_time`."""
         return np.where(np.isfinite(self.contact_time), self.contact_time, self.observation_time)
 
-    def table(self) -> pd.DataFrame:
-        """One row per impact, with the rebound of oblique ones."""
+    def columns(self) -> dict[str, np.ndarray]:
+        """The numbers of each impact by name, with the rebound of oblique ones."""
         rebound = {} if self.rebound is None else self.rebound.columns()
-        return pd.DataFrame({name: getattr(self, name) for name in COLUMNS} | rebound)
+        return {name: getattr(self, name) for name in COLUMNS} | rebound
+
+    def table(self) -> "pd.DataFrame":
+        """`columns` as a table, one row per impact."""
+        import pandas as pd  # a third of a second: only where a table is asked for
+
+        return pd.DataFrame(self.columns())
 
 
 COLUMNS = ("speed", *(f.name for f in fields(Impact)), "strain")

@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Tables, JSON and the figure of a run."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 from rich.table import Table
 
 from ..base.files import claim
-from ..base.terminal import Shown, frame_table, heads, warned
-from ..theory.yielding import FIRST_YIELD_ROUNDED
+from ..base.terminal import Shown, frame_table, warned
 from .comparison import CHECKED
-from .experiment import Experiment
-from .prediction import Prediction, predict
+from .prediction import predict
+from .prediction_report import plain, yielding
 from .run import Outcome
 
 # heads of the table of a run, by column
@@ -54,12 +51,6 @@ OBLIQUE = {
 FEW = 10  # impacts of each engine and law in the short table
 
 
-def plain(value: Any) -> Any:
-    """A value for JSON: numpy scalars as Python's, NaN and infinity as null."""
-    value = value.item() if hasattr(value, "item") else value
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
 def records(rows: pd.DataFrame) -> list[dict[str, object]]:
     """The rows of a table for JSON."""
     return [{str(k): plain(value) for k, value in row.items()} for row in rows.to_dict("records")]
@@ -75,13 +66,6 @@ def document(outcome: Outcome) -> dict[str, object]:
         "warnings": outcome.warnings,
         "rows": records(outcome.results.comparison),
     }
-
-
-def yielding(prediction: Prediction) -> str:
-    """The materials that yield, or the common strength at which the pair yields, as a sentence."""
-    if prediction.yields and prediction.yields[0].startswith("law."):
-        return f"the pair yields at {prediction.yields[0]}"
-    return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
 
 
 def select_rows(outcome: Outcome, full: bool) -> pd.DataFrame:
@@ -177,37 +161,3 @@ def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
 
     with claim(outcome.folder, force=True):
         return save(main_chart(outcome), outcome.folder, formats)[0]
-
-
-def predictions(
-    pairs: list[tuple[Experiment, Prediction]], warnings: list[str], *, full: bool = False
-) -> tuple[object, list[Shown]]:
-    """Predictions of one case by several laws, with the warnings about the case: document, and table with lines.
-
-    full: the table has the estimated share of waves, as the document has.
-    """
-    tables = [p.table().assign(wave_share=np.nan if p.wave_share is None else p.wave_share) for _, p in pairs]
-    documents = [
-        {
-            "case": x.name,
-            "law": x.law.name,
-            "parameters": x.law.shown(),
-            "yields": p.yields,
-            "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
-            "warnings": [*warnings, *p.warnings],
-            "rows": records(table),
-        }
-        for (x, p), table in zip(pairs, tables, strict=True)
-    ]
-    frame = pd.concat([table.assign(law=x.law.name) for (x, _), table in zip(pairs, tables, strict=True)])
-    frame = frame if full else frame.drop(columns="wave_share")
-    columns = heads(["law", *frame.columns.drop("law")], {})
-    shown: list[Shown] = [frame_table(f"{pairs[0][0].title} (SI units)", frame, columns, digits=6)]
-    for x, p in pairs:
-        shown.append(f"{x.law.name}: {yielding(p)}")
-        for material, speed in p.yield_speeds.items():
-            never = "never: the softer body limits the pressure"
-            when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
-            shown.append(f"{x.law.name}: {material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
-        shown += warned(f"{x.law.name}: {warning}" for warning in p.warnings)
-    return documents[0] if len(documents) == 1 else documents, [*shown, *warned(warnings)]

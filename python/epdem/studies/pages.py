@@ -19,7 +19,8 @@ from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
 from ..impacts.plan import Plan
-from ..impacts.report import against_measured, largest_errors, yielding
+from ..impacts.prediction_report import yielding
+from ..impacts.report import against_measured, largest_errors
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
 from ..report.chart import PALETTE, Axis, Chart, Panel, Series
