@@ -43,7 +43,7 @@ def carried_out(data: dict) -> None:
         for sentence in case_warnings(p.case):
             one_sentence(sentence)
         assert all(checked_deck(p).values())
-        if p.case.scene.count <= 2000:
+        if p.case.scene["count"] <= 2000:
             scene_deck.files(p)
         return
     x = experiment(impact.parse(data))

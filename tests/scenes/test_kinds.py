@@ -16,6 +16,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import load
 from epdem.case.toml import portable_text, read_toml
 from epdem.errors import CaseError
+from epdem.scenes.measures import refuse_measures
 from epdem.scenes.plan import plan
 from epdem.studies.pages import write_scene_page, write_sweep_page
 from epdem.studies.sweep.run import plan as plan_sweep
@@ -108,9 +109,22 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("[keys]", "[key]", r"mill.toml.j2: \[keys\] at the head has a mistake: 'keys'"),
-        ("{% set r = diameter / 2 %}", "", "scene of kind './mill.toml.j2': 'r' is undefined"),
+        ("[keys]", "[key]", r"mill.toml.j2: a kind has the line \[keys\]"),
+        ('"material" }', '"materials" }', r"mill.toml.j2, line 3: \[keys\] walls: type = 'materials', must be one of"),
+        ('unit = "s"', 'units = "s"', r"mill.toml.j2, line 6: \[keys\] duration: must be a table with one of unit and"),
+        ('unit = "s"', 'unit = "sek"', r"mill.toml.j2, line 6: \[keys\] duration: unknown unit 'sek'"),
+        ('unit = "s"', 'unit = "ms"', r"mill.toml.j2, line 6: \[keys\] duration: the unit 'ms' is 0.001 of SI's"),
+        ("count = {", "pi = {", r"mill.toml.j2, line 4: \[keys\] pi: the name is taken"),
+        ("{% set r = diameter / 2 %}", "", "scene of kind './mill.toml.j2', line 11: 'r' is undefined"),
         ("{% set r = diameter / 2 %}", "{% set r = ''.__class__.__mro__ %}", "access to attribute '__class__' of"),
+        ("{% set r = diameter / 2 %}", "{% set r = [0] * 10**11 %}", "line 10: a list, text or number of more than"),
+        ("{% set r = diameter / 2 %}", "{% set r = 10**(10**10) %}", "line 10: a list, text or number of more than"),
+        ("{% set r = diameter / 2 %}", "{% set r = diameter / 2 }", "line 10: unexpected '}'"),
+        ("particles = {{ balls }}", 'particles = "steel"', "fill.particles = 'steel' is no key of type particles; "),
+        ('material = "{{ walls }}"', "material = {{ walls }}", "toml.j2': Invalid value .*; the line is 'wall = "),
+        ('material = "{{ walls }}"', 'material = "tin"', "scene.wall.shell.material = 'tin' is not defined"),
+        ('["torque"]', '["torqe"]', "key_figure = 'torqe' is no row, measure or figure; there are kinetic_energy, "),
+        ('["torque"]', '["heckel"]', "key_figure = 'heckel' is no row, measure or figure; there are"),
         ('kind = "cylinder"', 'kind = "tube"', "scene of kind './mill.toml.j2': wall.0.kind = 'tube', must be one of"),
         ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
         ('wall = "shell"', 'wall = "hull"', "row.torque.wall = 'hull' is no wall that has a torque"),
@@ -119,7 +133,34 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
 def test_a_mistake_of_a_kind_names_its_file(old, new, words, mill):
     (mill.parent / "mill.toml.j2").write_text(MILL.replace(old, new))
     with pytest.raises(CaseError, match=words):
+        refuse_measures(plan(load(mill)))
+
+
+@pytest.mark.parametrize("name", ["of_type", "heads", "body", "model_copy", "named_materials", "_secret", "copy"])
+def test_a_kind_may_give_a_key_any_name(name, mill):
+    scene = {name if key == "count" else key: value for key, value in SCENE.items()}
+    (mill.parent / "mill.toml.j2").write_text(
+        re.sub(r"\bcount = ({ type|{{ count)", rf"{name} = \1", MILL).replace(
+            f"{name} = {{{{ count", f"count = {{{{ {name}"
+        )
+    )
+    case = load(write_case(CASE | {"scene": scene}, mill.parent))
+    assert case.parts.fill[0].count == case.scene[name] == 20
+    with pytest.raises(CaseError, match=f"scene.{name} = 0.5, must be a whole number"):
+        load(write_case(CASE | {"scene": scene | {name: 0.5}}, mill.parent))
+
+
+@pytest.mark.parametrize("name", ["kind", "measure", "largest", "output", "refuse"])
+def test_a_name_that_a_kind_cannot_give_is_refused_with_its_line(name, mill):
+    (mill.parent / "mill.toml.j2").write_text(MILL.replace("count =", f"{name} ="))
+    with pytest.raises(CaseError, match=rf"mill.toml.j2, line 4: \[keys\] {name}: the name is taken"):
         load(mill)
+
+
+def test_a_message_names_the_particles_of_a_kind_without_places(mill):
+    text = "".join(x for x in MILL.splitlines(keepends=True) if not x.startswith("places"))
+    (mill.parent / "mill.toml.j2").write_text(text)
+    assert load(mill).parts.place("scene.fill.balls.particles") == "scene.balls"
 
 
 def test_no_word_of_a_kind_stands_below_the_room_of_cases():

@@ -51,7 +51,7 @@ def rows(p: ScenePlan, **columns) -> pd.DataFrame:
         "torque": ("drum_torque_y", 1.0),
     }
     given = {row.name: columns.pop(row.name, 0.0) for row in p.scene.row if row.name in forces}
-    names = {"particles": float(p.case.scene.count), "kinetic_energy": 0.0} | columns
+    names = {"particles": float(p.case.scene["count"]), "kinetic_energy": 0.0} | columns
     values = {n: np.broadcast_to(f(steps) if callable(f) else f, steps.shape) for n, f in names.items()}
     for name, f in given.items():
         column, sign = forces[name]

@@ -113,7 +113,7 @@ def test_deck_and_command_write_the_same_files(ball, tmp_path):
         assert file.read_text() == (tmp_path / "b" / file.name).read_text()
     scene = Scene.from_toml(ROOT / "cases/compaction_powder.toml")
     assert "in.scene" in {p.name for p in deck(scene, tmp_path / "c")}
-    assert scene.replace({"scene.count": 7}).model.scene.count == 7 and scene.model.scene.count == 1500
+    assert scene.replace({"scene.count": 7}).model.scene["count"] == 7 and scene.model.scene["count"] == 1500
 
 
 def test_compaction_and_index_are_replaced_like_all_keys(ball):

@@ -5,43 +5,64 @@ The kinds of epdem are in templates/kinds; a case names a kind of the user by it
 """
 
 import math
+import re
 import tomllib
+import traceback
 from collections.abc import Callable
 from functools import cache
+from operator import mul
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 import jinja2
 from jinja2.sandbox import SandboxedEnvironment
-from pydantic import Field, ValidationError, ValidationInfo, create_model, model_validator
-from pydantic_core import PydanticKnownError
+from pydantic import (
+    Field,
+    PydanticUserError,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+    create_model,
+    model_validator,
+)
+from pydantic_core import PydanticKnownError, SchemaError
 
 from ..base import paths
 from ..base.rendering import OPTIONS, number
 from ..errors import CaseError
 from .fields import Frozen, Name, Quantity
-from .messages import explain
+from .messages import explain, shorten
 from .parts import Measure, Parts
 from .sizes import Count, Mixture, Particles, refuse_shares
 from .toml import KIND, text_of
+from .units import refuse_unit
 
 BODY = "[scene]"  # the line at which the TOML of parts begins
 MOST = 32  # values of a key that is a list
+LARGEST = 1_000_000  # values of a list or characters of a text that a template makes, digits of a number
+PREFIX = "key_"  # of the attributes of keys, so that a kind may give a key any name
+HEAD = {"unit", "type", "above", "ge", "le", "values", "list", "default", "optional"}
 TYPES: dict[str, Any] = {"particles": Mixture, "count": Count, "material": Name, "bool": bool}
 
 
 class Keys(Frozen):
-    """The keys of a kind; `body`: template of the parts."""
+    """The keys of a kind, keys["count"]; `body`: template of the parts, below line `above` of its file."""
 
     body: ClassVar[str]
+    above: ClassVar[int]
     heads: ClassVar[dict[str, dict[str, Any]]]
     kind: str
     measure: list[Measure] = Field(default_factory=list, max_length=64)
 
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.heads:
+            raise KeyError(name)
+        return getattr(self, PREFIX + name)
+
     def of_type(self, wanted: str) -> dict[str, Any]:
         """The given values of the keys of a type."""
         names = [name for name, head in self.heads.items() if head.get("type") == wanted]
-        return {name: value for name in names if (value := getattr(self, name)) is not None}
+        return {name: value for name in names if (value := self[name]) is not None}
 
     @model_validator(mode="after")
     def _shares(self) -> "Keys":
@@ -84,18 +105,61 @@ def _annotation(head: dict[str, Any]) -> tuple[Any, Any]:
     return found, head.get("default", ...)
 
 
+def _refuse(text: str) -> None:
+    raise CaseError(text if text.startswith("scene.") else f"scene: {text}")
+
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "refuse": _refuse,
+    "rounded": lambda x: float(f"{x:.10g}"),
+    **{name: getattr(math, name) for name in ("pi", "tan", "sqrt", "hypot")},
+}
+
+
+def _mistake(path: Path, text: str, key: str, problem: object) -> CaseError:
+    line = next((n for n, x in enumerate(text.split("\n"), 1) if re.match(rf"[\s\"']*{re.escape(key)}\b", x)), 1)
+    return CaseError(f"{path}, line {line}: [keys] {key}: {problem}")
+
+
+def _refuse_head(name: str, head: Any, *, own: bool) -> None:
+    """Raise ValueError for the head of a key that has no meaning; `own`: of a user."""
+    if not name.isidentifier() or name in {*FUNCTIONS, "kind", "measure", "largest", "output"}:
+        raise ValueError("the name is taken or no name in a template; give the key another one")
+    if not isinstance(head, dict) or ("unit" in head) == ("type" in head):
+        raise ValueError('must be a table with one of unit and type, as { unit = "m" }')
+    if unknown := sorted(head.keys() - HEAD):
+        raise ValueError(f"{unknown[0]!r} is unknown; there are {', '.join(sorted(HEAD))}")
+    if "type" in head and head["type"] not in [*TYPES]:
+        raise ValueError(f"type = {head['type']!r}, must be one of {', '.join(TYPES)}")
+    if own and "unit" in head and head["unit"] != "1":  # takes half a second
+        refuse_unit(str(head["unit"]))
+
+
 @cache
 def keys_of(path: Path, text: str) -> type[Keys]:
-    """The model of the keys of a kind, from the text of its file. Raises ValueError for an invalid head."""
+    """The model of the keys of a kind, from the text of its file. Raises CaseError that names the line of a mistake."""
     head, line, below = text.partition(f"\n{BODY}\n")
     try:
-        heads = tomllib.loads(head)["keys"]
-        fields: dict[str, Any] = {name: _annotation(key) for name, key in heads.items()}
-    except (tomllib.TOMLDecodeError, KeyError, TypeError) as error:
-        raise ValueError(f"{path}: [keys] at the head has a mistake: {error}") from None
+        heads = tomllib.loads(head).get("keys")
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{path}: the head is not valid TOML: {error}") from None
+    if not line or not isinstance(heads, dict):
+        raise CaseError(
+            f"{path}: a kind has the line [keys], its keys, the line {BODY} and a template; add what is missing"
+        )
+    fields: dict[str, Any] = {}
+    own = not path.is_relative_to(paths.beside("templates"))
+    for name, key in heads.items():
+        try:
+            _refuse_head(name, key, own=own)
+            kind, default = _annotation(key)
+            fields[PREFIX + name] = (kind, Field(default, alias=name))
+            TypeAdapter(kind)
+        except (ValueError, TypeError, PydanticUserError, SchemaError) as error:
+            raise _mistake(path, text, name, error) from None
     said = head.partition("\n")[0].removeprefix("# ")
     model = create_model(path.name.removesuffix(KIND), __base__=Keys, __doc__=said, **fields)
-    model.body, model.heads = line + below, heads
+    model.body, model.above, model.heads = line + below, head.count("\n"), heads
     return model
 
 
@@ -131,17 +195,6 @@ def read_scene(value: object, info: ValidationInfo) -> Keys | Parts:
     return model.model_validate(value, context=context)
 
 
-def _refuse(text: str) -> None:
-    raise CaseError(text if text.startswith("scene.") else f"scene: {text}")
-
-
-FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "refuse": _refuse,
-    "rounded": lambda x: float(f"{x:.10g}"),
-    **{name: getattr(math, name) for name in ("pi", "tan", "sqrt", "hypot")},
-}
-
-
 def _as_toml(value: Any) -> Any:
     """A value as text of TOML."""
     match value:
@@ -154,11 +207,57 @@ def _as_toml(value: Any) -> Any:
     return value
 
 
+class _Sandbox(SandboxedEnvironment):
+    """A kind may come from other people: what it makes is bounded, too."""
+
+    intercepted_binops = frozenset(["*", "**"])
+
+    def call_binop(self, context: Any, operator: str, left: Any, right: Any) -> Any:
+        whole = isinstance(left, int) and isinstance(right, int)
+        size = abs(right) * left.bit_length() if operator == "**" and whole else 0
+        if operator == "*" and not whole:
+            size = max((mul(len(x), n) for x, n in ((left, right), (right, left)) if hasattr(x, "__len__")), default=0)
+        if size > LARGEST:
+            raise ValueError(f"a list, text or number of more than {LARGEST} values, characters or digits")
+        return super().call_binop(context, operator, left, right)
+
+
 @cache  # compiling takes far longer than filling
 def _template(body: str) -> jinja2.Template:
-    env = SandboxedEnvironment(**OPTIONS, finalize=_as_toml)  # a kind may come from other people
+    env = _Sandbox(**OPTIONS, finalize=_as_toml)
     env.globals.update(FUNCTIONS)
     return env.from_string(body)
+
+
+FAILURES = (jinja2.TemplateError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError, MemoryError)
+
+
+def _filled_in(keys: Keys, values: dict[str, Any], place: str) -> str:
+    """The text of the parts. Raises CaseError that names the line of the kind's file."""
+    try:
+        return _template(keys.body).render(values)
+    except CaseError:
+        raise
+    except (*FAILURES, RecursionError) as error:
+        frames = [n for frame, n in traceback.walk_tb(error.__traceback__) if frame.f_code.co_filename == "<template>"]
+        line = error.lineno if isinstance(error, jinja2.TemplateSyntaxError) else frames[-1] if frames else 1
+        said = str(error) or type(error).__name__
+        raise CaseError(f"{place}, line {keys.above + line}: {said}") from None
+
+
+def _tables(text: str, place: str) -> dict[str, Any]:
+    """The table [scene] of a filled template. Raises CaseError that shows the line."""
+    try:
+        scene = tomllib.loads(text)["scene"]
+    except tomllib.TOMLDecodeError as error:
+        at = re.search(r"at line (\d+)", str(error))
+        shown = f"; the line is {shorten(text.splitlines()[int(at[1]) - 1].strip())!r}" if at else ""
+        raise CaseError(f"{place}: {error}{shown}") from None
+    for name in ("fill", "measure"):
+        if not (isinstance(x := scene.get(name, []), list) and all(isinstance(part, dict) for part in x)):
+            raise CaseError(f"{place}: {name} must be a list of tables; write [[scene.{name}]]")
+    assert isinstance(scene, dict)
+    return scene
 
 
 def parts(keys: Keys | Parts, output: object) -> Parts:
@@ -168,16 +267,20 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
         return keys
     mixtures = {key: _Mixture(key, found) for key, found in keys.of_type("particles").items()}
     largest = {key: max(p.radii()[1] for p in mixture) for key, mixture in mixtures.items()}
-    values = {name: getattr(keys, name) for name in keys.heads} | mixtures
+    values = {name: keys[name] for name in keys.heads} | mixtures
     place = f"scene of kind {keys.kind!r}"
-    try:
-        text = _template(keys.body).render(values, largest=largest, output=output)
-        scene = tomllib.loads(text)["scene"]
-    except (jinja2.TemplateError, tomllib.TOMLDecodeError, TypeError, ArithmeticError) as error:
-        raise CaseError(f"{place}: {error}") from None
+    scene = _tables(_filled_in(keys, values | {"largest": largest, "output": output}, place), place)
+    places: dict[str, str] = {}
     for fill in scene.get("fill", []):
-        if isinstance(fill.get("particles"), str):
-            fill["particles"] = list(mixtures[fill["particles"]])
+        key = fill.get("particles")
+        if isinstance(key, str):
+            if key not in mixtures:
+                known = ", ".join(mixtures) or "none"
+                raise CaseError(f"{place}: fill.particles = {key!r} is no key of type particles; there are {known}")
+            fill["particles"] = list(mixtures[key])
+            places[f"scene.fill.{fill.get('name')}.particles"] = f"scene.{key}"
+    given = scene.get("places")
+    scene["places"] = places | given if isinstance(given, dict) else given or places
     try:
         return Parts.model_validate({"kind": "parts", **scene, "measure": [*scene.get("measure", []), *keys.measure]})
     except ValidationError as error:

@@ -151,7 +151,9 @@ class SceneCase(Frozen):
             if pair.restitution is not None and self.viscous is None:
                 raise ValueError("contact.pairs.restitution: there is no dashpot; add [viscous], for all other pairs")
         check_law(self.law, self.materials)
-        assert self.parts  # values that do not fit together are refused here
+        for place, name in self.parts.named_materials:  # values that do not fit together are refused here
+            if name not in self.materials:
+                raise ValueError(f"{place} = {name!r} is not defined; name a key of the kind or add [materials.{name}]")
         return self
 
     @property

@@ -55,6 +55,14 @@ def _by_pint(unit: str, si: str) -> float:
     return factor
 
 
+def refuse_unit(unit: str) -> None:
+    """Raise ValueError for a text that is no unit, or none of SI."""
+    _by_pint(unit, unit)
+    factor = float(_registry().Quantity(1.0, unit.replace("·", "*")).to_base_units().magnitude)
+    if factor != 1.0:
+        raise ValueError(f"the unit {unit!r} is {factor:g} of SI's; write the unit of SI")
+
+
 def to_si(text: object, si: str) -> float:
     """The value of `text`, a quantity as "208 GPa", in the SI unit `si`; a plain number if `si` is "1".
 

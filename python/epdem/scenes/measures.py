@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
+from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
@@ -16,13 +17,20 @@ from .plan import ScenePlan
 
 LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out
+OF_STAGES = ("densification", "heckel", "kawakita", "springback")  # key figures of a press
+OF_FRAMES = {"mass_flow": MassFlow, "rebound_speed": ReboundSpeed}  # key figures from frames, by their check
 SURFACE = 0.95  # of the mass of a bed, nearest to its middle: beyond it single spheres have rolled away
 
 
 def refuse_measures(p: ScenePlan) -> None:
-    """Raise CaseError for measures that the scene cannot give."""
+    """Raise CaseError for measures and key figures that the scene cannot give."""
     s = p.scene
     names, taken = [m.name for m in s.measure], columns_of_rows(p)
+    figures = [*sorted({*taken, *names} - {"step", "time"}), *(OF_STAGES if s.stages else ())]
+    figures += [figure for figure, check in OF_FRAMES.items() if any(isinstance(c, check) for c in s.check)]
+    if bad := next((name for name in s.key_figure if name not in figures), None):
+        kind = "" if p.case.scene.kind == "parts" else f" of kind {p.case.scene.kind!r}"
+        raise CaseError(f"scene{kind}: key_figure = {bad!r} is no row, measure or figure; there are {', '.join(figures)}")
     for m in s.measure:
         place = f"scene.measure.{m.name}"
         if names.count(m.name) > 1:
