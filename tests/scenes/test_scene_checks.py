@@ -138,12 +138,12 @@ def test_stiffness_and_work_of_a_press_are_those_of_its_force_curve():
     p = planned("compaction", n_rows=1000, height="0.5 mm", unload_speed="0.4 m/s")
     s, turn = p.case.scene, p.phases[0].end
     k, k_back = 1e4, 4e4
-    way = s.box[2] - s.height
+    way = s["box"][2] - s["height"]
 
     def force(step):
         middle = np.maximum(step - 0.5 * p.every, 0)
-        down = s.speed * np.minimum(middle, turn) * p.phases[0].time_step
-        up = s.unload_speed * np.maximum(middle - turn, 0) * p.phases[1].time_step
+        down = s["speed"] * np.minimum(middle, turn) * p.phases[0].time_step
+        up = s["unload_speed"] * np.maximum(middle - turn, 0) * p.phases[1].time_step
         return np.maximum(k * down - k_back * up, 0)
 
     table = rows(p, plate_force=force)

@@ -243,7 +243,7 @@ def test_static_loads_of_every_kind_are_warned_of(gravity, tmp_path):
     path.write_text(PRESS.replace("GRAVITY", gravity))
     assert any("falls by a factor of 6.31 (k^0.4)" in w for w in soften(path, 100.0).warnings) == (gravity != "0")
     for name in ("settle_glass", "hopper_beads", "drum_beads", "impactor_bowl", "peening_steel"):
-        weighs = scenes.load(CASES / f"{name}.toml").scene.gravity > 0
+        weighs = scenes.load(CASES / f"{name}.toml").parts.gravity > 0
         assert any("static loads" in w for w in soften(CASES / f"{name}.toml", 2.0).warnings) == weighs
 
 

@@ -30,7 +30,9 @@ def refuse_measures(p: ScenePlan) -> None:
     figures += [figure for figure, check in OF_FRAMES.items() if any(isinstance(c, check) for c in s.check)]
     if bad := next((name for name in s.key_figure if name not in figures), None):
         kind = "" if p.case.scene.kind == "parts" else f" of kind {p.case.scene.kind!r}"
-        raise CaseError(f"scene{kind}: key_figure = {bad!r} is no row, measure or figure; there are {', '.join(figures)}")
+        raise CaseError(
+            f"scene{kind}: key_figure = {bad!r} is no row, measure or figure; there are {', '.join(figures)}"
+        )
     for m in s.measure:
         place = f"scene.measure.{m.name}"
         if names.count(m.name) > 1:
