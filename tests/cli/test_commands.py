@@ -218,6 +218,18 @@ def test_progress_shows_any_text_and_leaves_none_behind(capsys):
     assert capsys.readouterr() == ("", "")
 
 
+def test_progress_in_a_log_is_a_line_a_minute_with_place_time_and_rate(capsys, monkeypatch):
+    clock = iter([0.0, 10.0, 60.0, 61.0, 125.0])
+    monkeypatch.setattr(terminal.time, "monotonic", lambda: next(clock))
+    with terminal.bar("bed", "steps") as progress:
+        for done in (1000, 7000, 7100, 13500):
+            progress(done, 26000, "phase pour")
+    assert capsys.readouterr().err.splitlines() == [
+        "bed: 7000 of 26000 steps, phase pour, 1 min, 100 steps/s, 3 min left",
+        "bed: 13500 of 26000 steps, phase pour, 2 min, 100 steps/s, 2 min left",
+    ]
+
+
 def test_no_progress_line_stands_above_the_error_of_a_scene(folder, capsys, monkeypatch):
     shutil.copy(CASES / "settle_glass.toml", folder / "scene.toml")
     monkeypatch.setattr(paths, "launcher", lambda: Path("/bin/false"))

@@ -4,9 +4,10 @@
 import contextlib
 import copy
 import sys
+import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from itertools import repeat
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from rich.cells import cell_len
 from rich.console import Console
@@ -18,6 +19,7 @@ if TYPE_CHECKING:  # slow to import
     import numpy as np
     import pandas as pd
 
+EVERY = 60.0  # [s] between lines of progress in a log
 Shown: TypeAlias = Table | Text | str  # what `show` prints
 
 
@@ -95,10 +97,38 @@ def status() -> Iterator[Callable[[str], None]]:
         yield lambda text: line.update(Text(text))
 
 
+class Bar(Protocol):
+    """Takes how many are done, of how many, and where that is."""
+
+    def __call__(self, done: int, total: int, where: str = "") -> None: ...
+
+
+def _lines(what: str, counted: str) -> Bar:
+    """Progress in a log: a line on standard error every EVERY seconds, from the second call on."""
+    start = last = time.monotonic()
+    first: int | None = None
+
+    def say(done: int, total: int, where: str = "") -> None:
+        nonlocal first, last
+        now, first = time.monotonic(), done if first is None else first
+        if now - last < EVERY:
+            return
+        last, rate = now, (done - first) / (now - start)
+        left = f", {(total - done) / rate / 60:.0f} min left" if rate > 0 else ""
+        place = f", {where}" if where else ""
+        said = f"{what}: {done} of {total} {counted}{place}, {(now - start) / 60:.0f} min, {rate:.3g} {counted}/s{left}"
+        print(said, file=sys.stderr, flush=True)
+
+    return say
+
+
 @contextlib.contextmanager
-def bar(what: str, counted: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on standard error that vanishes at the end, none where that is no terminal; yields the function
-    that takes how many of the `counted` are done, and of how many."""
+def bar(what: str, counted: str) -> Iterator[Bar]:
+    """A progress bar on standard error that vanishes at the end, a line a minute where that is no terminal; yields the
+    function that takes the progress of the `counted`."""
+    if not sys.stderr.isatty():
+        yield _lines(what, counted)
+        return
     with Progress(
         TextColumn("{task.description}", markup=False),
         BarColumn(),
@@ -108,7 +138,6 @@ def bar(what: str, counted: str) -> Iterator[Callable[[int, int], None]]:
         TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
-        disable=not sys.stderr.isatty(),
     ) as shown:
         task = shown.add_task(what, total=None)
-        yield lambda done, total: shown.update(task, completed=done, total=total)
+        yield lambda done, total, where="": shown.update(task, completed=done, total=total)

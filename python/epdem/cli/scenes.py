@@ -36,7 +36,12 @@ def run_scene(
     if csv and not plan(load(case)).contacts:
         raise CaseError(f"{case}: --format csv: the scene has no table of contacts; give output.contacts")
     with bar(case.stem, "steps") as progress:
-        outcome = run(case, tool, report=progress, **options)
+        phases: list[Any] = []
+
+        def report_step(step: int, steps: int) -> None:
+            progress(step, steps, next((f"phase {x.name}" for x in phases if step <= x.end), ""))
+
+        outcome = run(case, tool, report=report_step, planned=lambda p: phases.extend(p.phases), **options)
     if csv:
         write_csv(outcome.folder / "contacts.csv", outcome.results.contacts)
     write_scene_page(outcome, formats)

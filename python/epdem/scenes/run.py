@@ -79,11 +79,12 @@ def run(
     resume: bool = False,
     force: bool = False,
     report: Progress = lambda step, steps: None,
+    planned: Callable[[ScenePlan], None] = lambda p: None,
 ) -> SceneOutcome:
     """Run a scene, or continue it from its last restart file. Raises CaseError, EngineError.
 
-    `fresh` ignores stored results; `force` allows a folder in which there are other files. All input is checked and
-    the engine looked for before anything is written or started.
+    `fresh` ignores stored results; `force` allows a folder in which there are other files; `planned` takes the plan.
+    All input is checked and the engine looked for before anything is written or started.
     """
     model, text, place = case if isinstance(case, LoadedCase) else LoadedCase(load(case), text_of(case), case)
     with error_context(place):
@@ -92,6 +93,7 @@ def run(
         pictures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
         notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
+    planned(p)
     refuse_ranks(engine, ranks)
     if resume and Feature.RESTART not in engine.features:
         raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
