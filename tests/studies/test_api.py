@@ -37,6 +37,17 @@ def ball():
     )
 
 
+def test_the_values_of_a_case_are_read_by_their_keys_in_si(ball):
+    assert ball["law.yield_pressure"] == 2.8e9 and ball["law.name"] == "thornton"
+    assert ball["materials.steel.yield_stress"] == 1e9 and ball["materials.steel.density"] == 7850.0
+    assert ball["impact.body.radius"] == 0.01 and ball["impact.speeds"][1] == 1.0
+    scene = Scene.from_toml(ROOT / "cases/hopper_beads.toml")
+    assert scene["scene.kind"] == "hopper" and scene["output.rows"] > 0 and scene["numerics.seed"] == 1
+    for key in ("impact.body.radious", "impact.speeds.9"):
+        with pytest.raises(CaseError, match=r"the nearest: impact|is not given"):
+            ball[key]
+
+
 def test_a_case_of_plain_values_is_the_case_of_the_file(ball):
     file = Case.from_toml(ROOT / "cases/steel_wall.toml")
     same = file.replace({"impact.speeds": SPEEDS, "law.yield_pressure": 2.8e9})

@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import Any, ClassVar, Self
 
 import tomlkit
+from pydantic import BaseModel
 
 from ..base.files import write_text
 from ..case import impact as impact_case
 from ..case import scene as scene_case
 from ..case.toml import LoadedCase, portable_text
+from ..case.units import to_si
+from ..errors import CaseError
 from ..studies.sweep import points
 from ..studies.sweep.points import with_units
 from .arguments import Table, take
@@ -78,6 +81,27 @@ class _File:
         case = type(self).__new__(type(self))
         case._read(document.as_string(), self.name)
         return case
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of a key by its dotted name, a quantity in SI: `case["impact.body.radius"]`; also a default.
+
+        Raises CaseError for a key that the case does not have, with the nearest one.
+        """
+        value: Any = self.model
+        try:
+            for part in take("key", key, str).split("."):
+                if isinstance(value, BaseModel):
+                    named = {
+                        field.alias or name: getattr(value, name) for name, field in type(value).model_fields.items()
+                    }
+                    value = named | (value.model_extra or {})
+                value = value[int(part) if isinstance(value, list) else part]
+        except (LookupError, TypeError, ValueError):
+            known = points.keys_of(tomllib.loads(self.text))
+            points.require_key(key, known, "case")
+            raise CaseError(f"case: {key!r} is not given and has no default") from None
+        unit = points.keys_of(tomllib.loads(self.text)).get(key, points.Key()).unit
+        return to_si(value, unit) if unit and isinstance(value, str) else value
 
     @property
     def name(self) -> str:
