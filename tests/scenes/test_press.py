@@ -17,7 +17,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
 from epdem.engines.yade import deck as yade_deck
 from epdem.errors import CaseError
-from epdem.scenes import report, stages
+from epdem.scenes import checks, report, stages
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
@@ -316,3 +316,78 @@ def test_the_work_of_a_press_needs_no_energy_balance(engine, tmp_path):
     way = -np.diff(found.rows["punch_z"], prepend=HEIGHT)
     work = (found.rows["pressure"] * SIDE**2 * way).cumsum().iloc[-1]
     assert found.stages["work"].iloc[-1] == pytest.approx(work, rel=0.05) and work > 0.0
+
+
+VOID = {"liggghts": "variable void equal ", "lammps": "variable void equal ", "yade": "void=lambda: "}
+BETWEEN = [{"eject": "0.1 mm"}, {"double_action": True}]
+
+
+def evaluated(formula, ways):
+    """The value of a formula of a deck where walls have gone these ways along z [m] from their places at the start."""
+    for name, way in ways.items():
+        at = {"punch": HEIGHT, "floor": 0.0}[name] + way
+        formula = formula.replace(f"f_wall_{name}[9]", repr(way)).replace(f"v_wall_{name}_z", repr(way))
+        formula = formula.replace(f'O.bodies[walls["{name}"][0]].state.pos[2]', repr(at))
+    return eval(formula, {"__builtins__": {}})
+
+
+@pytest.mark.parametrize("more", BETWEEN, ids=["eject", "double_action"])
+@pytest.mark.parametrize("engine", [*VOID])
+def test_the_void_of_a_deck_is_that_between_the_two_plates(engine, more):
+    files = scene_engine(engine).files(plan(parse(press(stages=["40 MPa"], **more))))
+    lines = [x.strip() for text in files.values() for x in text.splitlines() if x.strip().startswith(VOID[engine])]
+    assert lines
+    solid = COUNT * 4 / 3 * math.pi * RADIUS**3 / SIDE**2
+    for line in lines:
+        formula = line.removeprefix(VOID[engine]).partition(",  #")[0].partition("  #")[0]
+        found = evaluated(formula, {"punch": -0.5e-3, "floor": 0.3e-3})
+        assert found == pytest.approx(HEIGHT - 0.8e-3 - solid, rel=1e-9)
+
+
+@pytest.mark.parametrize("more", BETWEEN, ids=["eject", "double_action"])
+def test_height_and_density_are_those_between_the_two_plates(more):
+    """In an ejection the plates keep their distance; with double action each plate goes half of the way."""
+    p = plan(parse(without(press(stages=["40 MPa"], **more), "hold")))
+    steps = np.arange(0, p.steps + 1, p.every)
+    tables = {"rows": pd.DataFrame({"step": steps})}
+    found = stages.with_densities(p, tables).set_index("step")
+    time = p.time_at(np.maximum(steps - 0.5 * p.every, 0))
+    ends = p.phase_table["end_time"].to_numpy()
+    away = 0.5 * (np.clip(time, ends[0], ends[1]) - ends[0])
+    height = HEIGHT - 3.0 * np.minimum(time, ends[0]) + away
+    assert found["height"].to_numpy() == pytest.approx(np.abs(height), rel=1e-6, abs=1e-12)
+    volume = COUNT * 4 / 3 * math.pi * RADIUS**3
+    assert found["relative_density"].to_numpy() == pytest.approx(volume / (SIDE**2 * np.abs(height)), rel=1e-6)
+
+
+def test_a_stage_counts_once_the_opposite_plate_bears_a_twentieth_of_it():
+    """The value that ends a stage is 0 before: a sphere that strikes the punch alone is no pressure."""
+    asked = 40e6 * SIDE**2
+    for engine in ("liggghts", "lammps"):
+        files = scene_engine(engine).files(plan(parse(press(stages=["40 MPa"]))))
+        words = "\n".join(files.values()).partition("variable awaited equal ")[2].partition("\n")[0]
+        awaited = words.partition("  #")[0]
+        names = dict.fromkeys(re.findall(r"[fvc]_\w+\[\d\]", awaited))
+        punch, floor = names
+        for share, counts in ((0.049, 0.0), (0.051, 1.0)):
+            given = awaited.replace(punch, repr(-1.1 * asked)).replace(floor, repr(share * asked))
+            found = eval(given, {"__builtins__": {}, "abs": abs})
+            assert found == pytest.approx(counts * 1.1 * asked)
+
+
+def test_a_stage_beside_its_pressure_is_told_above_half_a_percent_and_fails_above_two():
+    p = plan(parse(without(press(periodic=True), "hold")))
+    stage = {"phase": "stage2", "step": p.phases[1].end, "asked": 40e6, "pressure": 40e6, "height": 0.4e-3}
+
+    def verdicts(error, density=0.8):
+        table = pd.DataFrame([stage | {"error": error, "reached": 40e6 * (1 + error), "relative_density": density}])
+        told = any("asked for" in x for x in stages.warnings(p, {"stages": table}))
+        rows = pd.DataFrame({"particles": [COUNT]})
+        found = checks.checks(p, {"rows": rows, "stages": table}).set_index("key")["passed"]
+        return told, bool(found["stage_pressure"]), bool(found["density"])
+
+    assert verdicts(0.004) == (False, True, True)
+    assert verdicts(-0.006) == verdicts(0.019) == (True, True, True)
+    assert verdicts(0.021) == verdicts(-0.021) == (True, False, True)
+    assert verdicts(0.0, density=0.999) == (False, True, True)
+    assert verdicts(0.0, density=1.0) == (False, True, False)

@@ -318,7 +318,8 @@ def _of_stages(stages: pd.DataFrame) -> list[Row]:
         worst = asked.loc[asked["error"].abs().idxmax()]
         rows.append(_row("stage_pressure", float(worst["reached"]), float(worst["asked"]), STAGE))
     if not stages.empty:
-        rows.append(_below("density", float(stages["relative_density"].max()), 1.0))
+        densest = float(stages["relative_density"].max())
+        rows.append(_below("density", densest, 1.0) | {"passed": densest < 1.0})
     return rows
 
 

@@ -366,11 +366,14 @@ def _row(rows: int, steps: float, given: list[float]) -> int:
 
 def _phases(scene: Parts, rows: int, every: int, dt: float, given: float | None) -> tuple[Phase, ...]:
     """The phases, each of which ends with a row: at the row next to its duration with a given time step, else exactly
-    at its duration, with a step of at most dt."""
+    at its duration, with a step of at most dt. Loading and release of a press last as long as their pressures need:
+    they have the step dt, so that their densities do not depend on the rows."""
     phases, end = [], 0
     for phase in scene.phase:
         step = phase.time_step or given
-        if step:
+        if scene.stages and phase.condition and not step:
+            own, step = math.ceil(phase.seconds / dt / every * (1.0 - ROUNDING)), dt
+        elif step:
             own = max(1, round(phase.seconds / step / every))
         else:
             own = rows if len(scene.phase) == 1 else math.ceil(phase.seconds / dt / every * (1.0 - ROUNDING))

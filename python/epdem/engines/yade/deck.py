@@ -169,11 +169,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         skin=skin,
         phases=phases,
         motions=tuple(motion for phase in phases for motion in phase.motions),
-        sampling=1
-        if every_step or any(phase.stops for phase in p.phases)
-        else p.sampling
-        if p.measured_walls
-        else p.every,
+        sampling=1 if every_step else p.sampling if p.measured_walls else p.every,
         works=tuple(WORKS[name] for name in p.works if name in WORKS),
         loads=tuple(loads(p)),
     )

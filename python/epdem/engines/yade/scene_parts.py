@@ -141,13 +141,13 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 @dataclass(frozen=True)
 class Stop:
     """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the
-    force on the opposite wall; at_rows: whether rows alone are looked at; walls: that rest from then on."""
+    force on the opposite wall; limit: of the value, 0 where rows alone are looked at; walls: that rest from then on."""
 
     value: str
     condition: str
     after: int
     opposite: str = ""
-    at_rows: bool = True
+    limit: float = 0.0
     walls: tuple[str, ...] = ()
 
 
@@ -176,7 +176,7 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
         return Stop(value, f"{'>=' if until.force else '<='} {limit}", after)
     near = until.limit * (1.0 - MISS if until.force else 1.0 + MISS)
     condition = f"{'>=' if until.force else '<='} {decks.number(near)}"
-    return Stop(value, condition, after, opposite, False, tuple(run.moves))
+    return Stop(value, condition, after, opposite, until.limit, tuple(run.moves))
 
 
 def void(p: ScenePlan, phase: str) -> str:

@@ -13,6 +13,7 @@ from .spheres import Fill, Spheres
 
 KINDS = ("force", "torque")  # of loads
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+LOOK = 100  # most steps between two looks at a condition
 SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, times w, so far
 
@@ -105,6 +106,7 @@ class Recorder:
         self._begin, self._end, self._records, self._recorded = 0, 0, False, False
         self._until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None  # of this phase
         self._opposite: Callable[[dict[str, float]], float] | None = None
+        self._limit = 0.0
         self._stops: Sequence[int] | None = None
         self._held, self._value, self._other = -1, 0.0, 0.0  # step at which the condition held, what it held at
         self._came = 0  # spheres at the end of the phase before
@@ -123,21 +125,22 @@ class Recorder:
         until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None,
         opposite: Callable[[dict[str, float]], float] | None = None,
         stops: Sequence[int] | None = None,
+        limit: float = 0.0,
         after: int = 0,
         void: Callable[[], float] | None = None,
     ) -> None:
         """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, which
         is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
-        that rest from then on, where the condition is looked at in each call, without it in each row; void: height of
-        the void in a pressed bed [m], whose loss ends the run
-        with a frame and a table.
+        that rest from then on, where `look` looks at the condition, without it each row does; limit: of the value, near
+        which looks are frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame
+        and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
         self._records, self._recorded = record, self._records
         self._begin, self._end = self._end, self._end + steps
         self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
-        self._opposite, self._stops, self._held = opposite, stops, -1
+        self._opposite, self._stops, self._limit, self._held = opposite, stops, limit, -1
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
@@ -174,8 +177,6 @@ class Recorder:
         """Between forces and motion: all that is due at this step."""
         if self.means:
             self._sums, self._samples = self._sums + self.on_walls(), self._samples + 1
-        if self._stops is not None:
-            self._look(dict(zip(self.means, self.on_walls().tolist(), strict=True)))
         if O.iter > 0:
             self.triangles.wear()
         if O.iter % self.every == 0:
@@ -193,6 +194,16 @@ class Recorder:
             self.frame()
         if self.tables and (last or O.iter % self.tables == 0):
             self.contact_table()
+
+    def look(self) -> int:
+        """Between forces and motion: look at the condition. The steps to the next look: at each row, and far fewer than
+        are left to the limit at the mean rate."""
+        steps = min(LOOK, int(self.every - O.iter % self.every))
+        if self._stops is None or self._held >= 0 or O.iter <= self._looked:
+            return steps
+        self._look(dict(zip(self.means, self.on_walls().tolist(), strict=True)))
+        left = abs(1.0 - self._value / self._limit)
+        return steps if left >= 0.5 else max(1, min(steps, int(0.02 * (O.iter - self._looked) * left / (1.0 - left))))
 
     def _look(self, row: dict[str, float]) -> None:
         """Whether the condition of the phase holds, in which case its walls rest."""
