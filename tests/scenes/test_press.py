@@ -4,6 +4,7 @@
 import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -22,7 +23,7 @@ from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 from epdem.studies.pages import scene_page, scene_sentences
-from epdem.studies.sweep.table import numbers_of
+from epdem.studies.sweep.table import numbers_of, unit
 
 SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
 PRESSURES = [10e6, 40e6]
@@ -391,3 +392,16 @@ def test_a_stage_beside_its_pressure_is_told_above_half_a_percent_and_fails_abov
     assert verdicts(0.021) == verdicts(-0.021) == (True, False, True)
     assert verdicts(0.0, density=0.999) == (False, True, True)
     assert verdicts(0.0, density=1.0) == (False, True, False)
+
+
+def test_a_sweep_has_the_stages_of_a_press():
+    """Measured densities at several pressures are targets of a fit."""
+    stages = pd.DataFrame({"phase": ["stage1", "release1"], "time": [1.0, 2.0], "relative_density": [0.56, 0.54]})
+    stages["springback"] = [math.nan, 0.02]
+    rows = pd.DataFrame({"step": [0, 10], "time": [0.0, 2.0]})
+    tables = {"rows": rows, "stages": stages, "checks": pd.DataFrame({"key": [], "value": []})}
+    found = numbers_of(SimpleNamespace(tables=tables))
+    assert found["stage1_relative_density"] == 0.56 and found["release1_springback"] == 0.02
+    assert "stage1_springback" not in found
+    data = read_toml(CASES / "press_tablet.toml")
+    assert unit("stage1_radial_pressure", data) == "Pa" and unit("release1_springback", data) in (None, "", "1")

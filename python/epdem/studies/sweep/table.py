@@ -74,8 +74,12 @@ def numbers_of(results: SceneResults) -> dict[str, float]:
     """COLUMN_last, _min, _max and _mean (over the last fifth) of every column of rows and measures, and each check.
 
     Forces and torques that a case measures are columns of the rows. The name of a check is its key (scenes/checks.py).
+    Of a press also PHASE_COLUMN of the stages, as stage1_relative_density.
     """
     numbers = {}
+    for stage in results.tables["stages"].to_dict("records") if "stages" in results.tables else ():
+        named = {f"{stage['phase']}_{name}": x for name, x in stage.items() if isinstance(x, float) and x == x}
+        numbers |= named
     for curves in (results.tables["rows"], results.tables.get("measures")):
         if curves is None:
             continue
@@ -92,8 +96,12 @@ def unit(name: str, case: Mapping[str, Any]) -> str | None:
     """The SI unit of a number of `numbers_of` of a scene with these TOML tables; None for a plain number."""
     if name in CHECKS:
         return CHECKS[name].unit or None
-    column = name.rpartition("_")[0]
     parts = parse(dict(case)).parts
+    column = name.rpartition("_")[0]
+    if parts.stages:
+        ends = [name.removeprefix(f"{x.name}_") for x in parts.phase if name.startswith(f"{x.name}_")]
+        if of_stage := next((SCENE_UNITS[x] for x in ends if x in SCENE_UNITS), None):
+            return of_stage
     kinds = {m.name: MEASURES[m.kind] for m in parts.measure}
     rows = {row.name: row for row in parts.row}
     known = kinds.get(column) or rows.get(column)
