@@ -76,7 +76,7 @@ def numbers_of(results: SceneResults) -> dict[str, float]:
     Forces and torques that a case measures are columns of the rows. The name of a check is its key (scenes/checks.py).
     Of a press also PHASE_COLUMN of the stages, as stage1_relative_density.
     """
-    numbers = {}
+    numbers: dict[str, float] = {}
     for stage in results.tables["stages"].to_dict("records") if "stages" in results.tables else ():
         named = {f"{stage['phase']}_{name}": x for name, x in stage.items() if isinstance(x, float) and x == x}
         numbers |= named
