@@ -69,7 +69,8 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     assert found["pressure"][holds].to_numpy() == pytest.approx(at["pressure"][holds]) and (at["pressure"] > 0).all()
     reached = found.set_index("phase")["pressure"]
     for k, pressure in enumerate(PRESSURES, 1):
-        assert reached[f"stage{k}"] == pytest.approx(pressure, rel=5e-3)
+        # at 3 m/s; looks 2.5 times as frequent give the same
+        assert reached[f"stage{k}"] == pytest.approx(pressure, rel=1e-2)
         assert reached[f"release{k}"] <= 0.011 * pressure
     by_phase = found.set_index("phase")
     assert by_phase["asked"].dropna().to_dict() == pytest.approx({"stage1": PRESSURES[0], "stage2": PRESSURES[1]})
@@ -116,7 +117,8 @@ def test_the_page_has_density_over_pressure_and_heckels_line_through_the_stages(
         at = int(ends.index[ends["phase"] == name][0])
         way = np.arange(1, len(curve.y) + 1) - 0.5  # the middles of rows, from the height of the end of loading
         strain = 0.5 * way * pressed.plan.every * pressed.plan.time_step / ends["height"][at - 1]
-        assert curve.name == name and np.asarray(curve.y) == pytest.approx(strain, rel=1e-6)
+        assert curve.name == name and np.asarray(curve.y)[:-1] == pytest.approx(strain[:-1], rel=1e-6)
+        assert strain[-2] < curve.y[-1] <= strain[-1], "the punch rests within the last row"
         assert np.asarray(curve.x) == pytest.approx(rows["pressure"].loc[: ends["step"][at]].to_numpy()[-len(way) :])
 
 
@@ -405,3 +407,15 @@ def test_a_sweep_has_the_stages_of_a_press():
     assert "stage1_springback" not in found
     data = read_toml(CASES / "press_tablet.toml")
     assert unit("stage1_radial_pressure", data) == "Pa" and unit("release1_springback", data) in (None, "", "1")
+
+
+def test_the_time_step_of_a_press_does_not_follow_the_rows():
+    """Loading and release end at their pressures, at a step that both numbers of rows have; no duration is missed."""
+    found = []
+    for rows in (100, 400):
+        data = press()
+        data["output"]["rows"] = rows
+        p = plan(parse(data))
+        found.append([phase.time_step for phase in p.phases if phase.case.condition])
+        assert not [warning for warning in planned_warnings(p) if "its time_step is given" in warning]
+    assert found[0] == found[1] and len({*found[0]}) == 1

@@ -203,7 +203,7 @@ class Recorder:
             return steps
         self._look(dict(zip(self.means, self.on_walls().tolist(), strict=True)))
         left = abs(1.0 - self._value / self._limit)
-        return steps if left >= 0.5 else max(1, min(steps, int(0.02 * (O.iter - self._looked) * left / (1.0 - left))))
+        return steps if left >= 0.5 else max(1, min(steps, int(0.005 * (O.iter - self._looked) * left / (1.0 - left))))
 
     def _look(self, row: dict[str, float]) -> None:
         """Whether the condition of the phase holds, in which case its walls rest."""
