@@ -90,18 +90,34 @@ def test_a_sphere_that_leaves_has_passed_a_plane_only_if_its_motion_carries_it_t
     assert found["value"].iloc[-1] == pytest.approx(2e-6 / seconds * flows * fast)
 
 
-def test_a_sphere_passes_a_plane_of_a_periodic_room_in_each_image():
-    """One that goes by 0.4 of the period in each of ten frames: four times."""
+@pytest.mark.parametrize(("share", "flows"), [(0.5, 1), (2.0, 0)])
+def test_a_sphere_that_leaves_by_a_side_above_a_plane_has_not_passed_it(share, flows):
+    """It moves sideways so fast that it is at the plane after this share of its way to the side."""
+    p = planned({"kind": "flow", "direction": "-z", "at": "2 mm", "name": "value"})
+    at = next(n for n in p.frame_steps(p.frames) if n > 0)
+    seconds, side = float(p.time_at(np.array([at]))[0]), p.scene.room.limits[1]
+    down = 3e-3 / (0.25 * seconds) - 0.5 * 9.81 * 0.25 * seconds  # through the plane after a quarter of the interval
+    here = spheres(0, np.array([[0, 0, 5e-3]])).assign(vz=-down, vx=share * side / (0.25 * seconds))
+    rows = pd.DataFrame({"step": [0, at], "particles": [1, 0]})
+    found = measures.curves(p, {"particles": here, "rows": rows})["value"]
+    assert found.iloc[-1] == pytest.approx(2e-6 / seconds * flows)
+
+
+@pytest.mark.parametrize("share", [0.4, 0.9, 1.7, -0.9])
+def test_a_sphere_passes_a_plane_of_a_periodic_room_in_each_image(share):
+    """One that goes by this share of the period from each of ten frames to the next, at constant velocity."""
     data = parts(measure=[{"kind": "flow", "direction": "+x", "at": "0 mm", "name": "value"}])
     data["scene"] |= {"periodic": "x", "wall": [w for w in data["scene"]["wall"] if w.get("axis") != "x"]}
     p = plan(parse(data))
     period = p.scene.periods[0]
     low = p.scene.room.limits[0]
-    frames = [spheres(100 * n, np.array([[low + (0.05 + 0.4 * n) % 1.0 * period, 0, 1e-3]])) for n in range(11)]
+    frames = [spheres(100 * n, np.array([[low + (0.05 + share * n) % 1.0 * period, 0, 1e-3]])) for n in range(11)]
+    frames = [frame.assign(vx=share * period / float(p.time_at(np.array([100]))[0])) for frame in frames]
     rows = pd.DataFrame({"step": np.arange(11) * 100, "particles": 1})
     found = measures.curves(p, {"particles": pd.concat(frames), "rows": rows})
     mass = float((found["value"].to_numpy()[1:] * np.diff(p.time_at(found["step"].to_numpy()))).sum())
-    assert mass == pytest.approx(4 * 2e-6)
+    first, last = (0.05 + share * n - (0.0 - low) / period for n in (0, 10))  # periods beyond the plane
+    assert mass == pytest.approx((math.floor(last) - math.floor(first)) * 2e-6)
 
 
 def test_an_emptied_room_has_no_mass_no_flow_and_no_centre():

@@ -153,11 +153,23 @@ def _porosity(p: ScenePlan, m: Porosity, frame: pd.DataFrame) -> float:
     return float(1.0 - taken / (len(lines) * height))
 
 
+def _time_to_sides(p: ScenePlan, spheres: pd.DataFrame, axis: str) -> FloatArray:
+    """Time [s] after which each sphere leaves the room by a face that is not across the axis; inf: never."""
+    times = np.full(len(spheres), np.inf)
+    for k, name in enumerate("xyz"):
+        if name != axis and not p.scene.periods[k]:
+            x, v = spheres[name].to_numpy(), spheres[f"v{name}"].to_numpy()
+            way = np.where(v > 0, p.scene.room.limits[2 * k + 1], p.scene.room.limits[2 * k]) - x
+            times = np.minimum(times, np.divide(way, v, out=np.full(len(v), np.inf), where=v != 0))
+    return np.asarray(np.maximum(times, 0.0))
+
+
 def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> FloatArray:
     """Mass that passes the plane between two frames over the time between them; 0 at the first.
 
-    A sphere that leaves the room passes the plane if its last place, velocity and weight carry it through. Along a
-    periodic axis a sphere passes the plane in each image of the room.
+    A sphere that leaves the room passes the plane if its last place, velocity and weight carry it through before they
+    carry it out by a side. Along a periodic axis a sphere passes the plane in each image of the room; its velocities
+    tell how many periods it moves between two frames.
     """
     axis, sign = m.direction[1], 1.0 if m.direction[0] == "+" else -1.0
     chosen, seconds = _chosen(p, m, spheres), np.diff(p.time_at(steps))
@@ -169,10 +181,12 @@ def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> Fl
     period = p.scene.periods["xyz".index(axis)]
     moved = np.diff(place, axis=0)
     if period:
-        moved -= period * np.round(moved / period)
+        moved += period * np.round((0.5 * (speed[:-1] + speed[1:]) * seconds[:, None] - moved) / period)
     there = np.isfinite(place)
-    fall = 0.5 * p.scene.gravity * seconds[:, None] ** 2 if axis == "z" else 0.0
-    moved = np.where(there[:-1] & ~there[1:] & (not period), speed[:-1] * seconds[:, None] - fall, moved)
+    last = chosen.drop_duplicates("id", keep="last").set_index("id").loc[mass.index]
+    until = np.minimum(seconds[:, None], _time_to_sides(p, last, axis))
+    fall = 0.5 * p.scene.gravity * until**2 if axis == "z" else 0.0
+    moved = np.where(there[:-1] & ~there[1:] & (not period), speed[:-1] * until - fall, moved)
     before = sign * (place[:-1] - m.at)
     counted = [np.floor(x / period) if period else (x > 0).astype(float) for x in (before, before + sign * moved)]
     new = np.where(np.isfinite(moved), counted[1] - counted[0], 0.0)
