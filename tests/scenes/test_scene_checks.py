@@ -114,6 +114,19 @@ def test_a_mass_flow_without_an_expected_rate_is_not_checked(beds, outlet, why):
     assert why in checks.flow_warnings(p, tables)[0]
 
 
+@pytest.mark.parametrize("kind", ["settle", "hopper"])
+def test_a_check_that_would_expect_nothing_compares_nothing(kind):
+    """Without gravity weight, rebound and flow are 0, and 0 agrees with any bed at rest."""
+    data = data_of(kind)
+    data["scene"] |= {"gravity": "0 m/s^2"}
+    data["output"] |= {"particles": checks.MANY, "loads": True}
+    data["numerics"] |= {"highest_speed": "1 m/s"}
+    p = plan(parse(data))
+    tables = {"particles": frames(p, [{"z": 0.0005 * k} for k in range(30)]), "rows": rows(p, floor_load=0.0)}
+    found = checks.checks(p, tables)
+    assert found["key"].to_list() == ["spheres_in_room"]
+
+
 @pytest.mark.parametrize(("load", "passed"), [(1.0, True), (1.019, True), (0.97, False), (0.0, False)])
 def test_the_floor_load_is_the_mean_of_the_last_fifth_over_the_weight(load, passed):
     p = planned("settle")

@@ -220,7 +220,9 @@ def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[f
     inside = bed[(bed["z"] > low) & (bed["z"] < high)]
     bulk = inside["mass"].sum() / (flow.volume(high) - flow.volume(low))
     diameter, unknown = 2 * float(bed["radius"].mean()), ""
-    if kinetic(bed).sum() > AT_REST * (bed["mass"] * p.scene.gravity * bed["radius"]).sum():
+    if not p.scene.gravity:
+        unknown = "nothing falls without gravity"
+    elif kinetic(bed).sum() > AT_REST * (bed["mass"] * p.scene.gravity * bed["radius"]).sum():
         unknown = "the bed still falls as the outlet opens; give a longer fill_time"
     elif flow.outlet <= 1.4 * diameter:
         unknown = f"the outlet of {flow.outlet:g} m is below 1.4 diameters of the spheres, where nothing flows"
@@ -332,9 +334,9 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
         rows.append(_row("spheres_in_room", float(tables["rows"]["particles"].iloc[-1]), float(p.count), 0.0))
     for check in p.scene.check:
         match check:
-            case FloorLoad() if "particles" in tables and _has_smooth_walls(p):
+            case FloorLoad() if "particles" in tables and _has_smooth_walls(p) and p.scene.gravity:  # or 0 is 0
                 rows.append(_row("floor_load", *floor_load(p.case, check, tables), 0.02))
-            case BedRebound() if many and not p.model.adheres:  # what sticks swings back
+            case BedRebound() if many and p.scene.gravity and not p.model.adheres:  # what sticks swings back
                 rows.append(_below("rebound_of_the_bed", *bed_rebound(p.case, tables["particles"])))
             case MassFlow() if many:
                 flow = discharge(p, check, tables["particles"])
