@@ -86,11 +86,11 @@ def test_vibrating_walls_are_the_same_in_liggghts_and_lammps(tmp_path):
     assert places[0] == pytest.approx(places[1], abs=1e-9)
 
 
-def pressed(*moves: dict) -> dict:
-    """A bed under a lid with friction and both dashpots, a phase for each motion and one of rest."""
-    lid = PLATE | {"name": "lid", "center": ["0 mm", "0 mm", "12 mm"], "size": ["17.9 mm", "17.9 mm"]}
+def pressed(*moves: dict, height: str) -> dict:
+    """A bed under or on a lid with friction and both dashpots, a phase for each motion and one of rest."""
+    lid = PLATE | {"name": "lid", "center": ["0 mm", "0 mm", height], "size": ["17.9 mm", "17.9 mm"]}
     box = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "39 mm"]}
-    bed = BED | {"count": 60, "region": BED["region"] | {"z": ["0 mm", "11 mm"]}}
+    bed = BED | {"count": 60, "region": BED["region"] | {"z": ["0.6 mm", "11.4 mm"]}}
     every = [[{"wall": "lid"} | move] for move in moves] + [[]]
     phases = [{"name": f"phase{n}", "duration": "10 ms", "move": move} for n, move in enumerate(every)]
     data = parts(wall=[box | {"material": "steel"}, lid], fill=[bed], phase=phases) | {"viscous": {"restitution": 0.5}}
@@ -100,7 +100,7 @@ def pressed(*moves: dict) -> dict:
 
 DOWN = {"kind": "linear", "velocity": ["0.05 m/s", "0 m/s", "-0.3 m/s"]}
 SLOWER = DOWN | {"velocity": ["0 m/s", "0 m/s", "-0.2 m/s"]}
-HELD = {"kind": "press", "direction": [0, 0, -1], "force": "50 mN", "highest_speed": "0.3 m/s"}
+HELD = {"kind": "press", "direction": [0, 0, 1], "force": "50 mN", "highest_speed": "0.3 m/s"}
 
 
 @pytest.mark.parametrize(
@@ -113,7 +113,7 @@ HELD = {"kind": "press", "direction": [0, 0, -1], "force": "50 mN", "highest_spe
 )
 def test_a_run_under_a_moving_wall_goes_on_bitwise_with_dashpots(engine, moves, tmp_path):
     """From every restart file: every table, the frame in which the run goes on included."""
-    tool, p = scene_engine(engine), plan(parse(pressed(*moves)))
+    tool, p = scene_engine(engine), plan(parse(pressed(*moves, height="0.5 mm" if HELD in moves else "12 mm")))
     write_texts(tmp_path, tool.files(p))
     tool.start(tool.scripts[1], tmp_path, ranks=1)
     whole = tool.read(p, tmp_path)
