@@ -36,7 +36,7 @@ def test_a_compaction_shows_force_over_the_displacement_of_its_plate():
     s, (load, unload) = p.case.scene, panel.series
     assert [*load.y, *unload.y] == pytest.approx(tables["rows"]["plate_force"][1:].to_list(), rel=1e-12)
     middle = tables["rows"]["time"][1:] - 0.5 * p.every * p.time_step  # of the interval of a mean
-    assert load.x == pytest.approx(s.speed * middle[: len(load.x)].to_numpy(), rel=1e-6)
+    assert load.x == pytest.approx(s["speed"] * middle[: len(load.x)].to_numpy(), rel=1e-6)
     assert (np.diff(unload.x) < 0).all()
 
 

@@ -98,7 +98,9 @@ def plate_ends(p, tables):
     s, turn = p.case.scene, p.phases[0].end * p.time_step
     rows = tables["rows"][["step", "time"]].copy()
     rows["plate_end"] = (
-        s.box[2] - s.speed * rows["time"].clip(upper=turn) + s.unload_speed * (rows["time"] - turn).clip(lower=0)
+        s["box"][2]
+        - s["speed"] * rows["time"].clip(upper=turn)
+        + s["unload_speed"] * (rows["time"] - turn).clip(lower=0)
     )
     return rows.itertuples()
 
@@ -157,7 +159,7 @@ def test_every_column_has_a_unit_unless_it_is_a_name_or_a_count(stored):
     named = {row.name: row for row in p.scene.row}
     assert set(named) <= set(tables["rows"]) and {*units(tables["rows"])} >= set(named)
     dents = {f"delta_max_{w.name}" for w in p.scene.planes} & set(tables["particles"])
-    of_phases = {"phase", "begin", "end", "until"}
+    of_phases = {"phase", "begin", "end", "until", "held", "value", "opposite"}  # value: in the unit of the condition
     without = {"step", "particles", "id", "type", "wall", "i", "j", *NORMAL, *STRAINS} | of_phases
     assert found - set(UNITS) - set(named) - dents == without
 
