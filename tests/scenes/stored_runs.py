@@ -45,7 +45,7 @@ RUNS: dict[str, tuple[str, str, dict[str, object], str]] = {
     "drum": (
         "liggghts",
         "drum_beads",
-        {"count": 8, "diameter": "16 mm", "length": "6 mm", "duration": "0.08 s"},
+        {"count": 8, "diameter": "16 mm", "length": "6 mm", "duration": "0.08 s", "fixed_ends": True},
         "1e-5 s",
     ),
     "compaction": ("liggghts", "compaction_powder", PRESS, "5e-8 s"),

@@ -96,6 +96,7 @@ NOT_DRAWN = {
     "MassFlow": ALONE,
     "ReboundSpeed": ALONE,
     "Unloading": ALONE,
+    "TorqueOfBed": ALONE,
     "SceneCase": {"measured": "numbers beside those of a press: test_press.py"},
     "MeasuredDensities": "numbers beside those of a press: test_press.py",
     "SceneMaterial": {

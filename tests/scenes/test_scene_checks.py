@@ -207,6 +207,34 @@ def test_only_shot_that_met_the_plate_alone_counts():
     assert not verdict(p, "rebound_speed", particles=frames(p, [{"vz": 29.9 * up}]))["passed"]
 
 
+@pytest.mark.parametrize(("factor", "passed"), [(1.0, True), (1.009, True), (1.02, False)])
+def test_the_torque_on_a_drum_is_the_weight_of_its_bed_times_the_arm(factor, passed):
+    """A bed of two spheres is carried up and falls back in the first half; then one circles about the axis ever faster:
+    T = M g x_cm - m R^2 d(omega)/dt - 2/5 m r^2 d(spin)/dt."""
+    p, m, r, R, growth = planned("drum", fixed_ends=False), 1e-5, 1e-3, 4e-3, 300.0
+    seconds = p.time_at(np.arange(0, p.steps + 1, p.frames))
+    circling = {"z": R, "vx": R * growth * seconds, "omega_y": 7.0 * growth * seconds}
+    late = seconds >= 0.5 * seconds[-1]
+    resting = {"x": np.where(late, 3e-3, -50e-3), "mass": 2 * m, "omega_y": 0.0}
+    torque = 2 * m * 9.81 * 3e-3 - m * growth * R**2 - 0.4 * m * r**2 * 7.0 * growth
+    expected = 2 * m * 9.81 * 3e-3
+    given = rows(p, torque=lambda s: np.where(s > 0.5 * s.max(), torque + (factor - 1.0) * expected, 99.0))
+    found = verdict(p, "torque_of_the_bed", rows=given, particles=frames(p, [circling, resting]))
+    assert found["expected"] == pytest.approx(expected, rel=1e-9) and bool(found["passed"]) is passed
+    assert found["value"] == pytest.approx(factor * expected, rel=1e-9)
+
+
+def test_the_torque_of_a_drum_is_not_checked_where_its_ends_are_at_rest_or_friction_of_rolling_turns_spheres():
+    resting = planned("drum")
+    assert not resting.scene.check and [w.name for w in resting.scene.planes] == ["front", "back"]
+    data = data_of("drum") | {"contact": {"rolling": {"model": "cdt", "coefficient": 0.1}}}
+    data["scene"] |= {"fixed_ends": False}
+    p = plan(parse(data | {"output": {"rows": 40, "particles": 20, "loads": True}}))
+    assert p.scene.check and not p.scene.planes
+    tables = {"rows": rows(p), "particles": frames(p, [{"omega_y": 0.0}])}
+    assert "torque_of_the_bed" not in checks.checks(p, tables)["key"].to_list()
+
+
 def test_a_lost_sphere_fails_the_check_of_the_room():
     p = planned("drum")
     assert verdict(p, "spheres_in_room")["passed"]

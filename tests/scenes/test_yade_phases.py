@@ -240,8 +240,9 @@ def test_the_torque_of_a_drum_gives_its_bed_the_energy_that_it_has(tmp_path):
     data["scene"] |= {"duration": "40 ms", "count": 60, "angular_velocity": "600 rpm"}
     data["scene"] |= {"diameter": "16 mm", "length": "8 mm", "particles": [{"material": "beads", "radius": "0.7 mm"}]}
     data |= {"contact": {"friction": 0.5, "tangential": "partial_slip"}}
-    data["output"] = {"rows": 40, "particles": 10, "energy": True, "loads": True}
+    data["output"] = {"rows": 40, "particles": 40, "energy": True, "loads": True}
     outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    assert "torque_of_the_bed" in outcome.results.checks["key"].to_list()
     balance = outcome.results.energy_balance
     assert outcome.passed, outcome.results.checks
     assert balance["work"].iloc[-1] > 0.5 * balance["kinetic"].max() > 0

@@ -101,6 +101,13 @@ class Unloading(Frozen):
     position: PartName
 
 
+class TorqueOfBed(Frozen):
+    """The torque `row` on a drum that is all the walls of its bed, about the y axis, is that of the bed's weight."""
+
+    kind: Literal["torque_of_the_bed"]
+    row: PartName
+
+
 class Stages(Frozen):
     """The table of a press has the end of each phase from the first in which `wall` moves towards `against`, a plane or
     a plate.
@@ -134,4 +141,6 @@ class MeasuredDensities(Frozen):
         return self
 
 
-Check = Annotated[FloorLoad | BedRebound | MassFlow | ReboundSpeed | Unloading, Field(discriminator="kind")]
+Check = Annotated[
+    FloorLoad | BedRebound | MassFlow | ReboundSpeed | Unloading | TorqueOfBed, Field(discriminator="kind")
+]

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..base.tables import Column
-from ..case.outputs import BedRebound, FloorLoad, MassFlow, ReboundSpeed, Unloading
+from ..case.outputs import BedRebound, FloorLoad, MassFlow, ReboundSpeed, TorqueOfBed, Unloading
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
 from ..laws.strengths import ADHESION
@@ -111,6 +111,7 @@ CHECKS = {  # the unit of value and expected; what passes
     "rebound_speed": Column("m/s", "{count} shots that hit the plate alone leave it with e_n v"),
     "loading_stiffness": Column("N/m", "loading is at most as stiff as unloading"),
     "recovered_work": Column("J", "the plate recovers at most the work that it did"),
+    "torque_of_the_bed": Column("N m", "the torque on the drum is the weight of the bed times its arm"),
     "force_on_all_walls": Column("N", "the force on all walls is the weight of the spheres"),
     "void": Column("", "number of pressed beds that lost all void, which ended the run"),
     "stage_pressure": Column("Pa", "each stage reaches its pressure (here the one farthest from it)"),
@@ -264,6 +265,27 @@ def _bond_number(p: ScenePlan) -> str:
     return f": the Bond number of its spheres (pull-off force over weight) is {bond:.3g}"
 
 
+def bed_torque(p: ScenePlan, check: TorqueOfBed, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
+    """(torque on the drum and growth of the bed's angular momentum, M g x_cm) about the y axis [N m], means over the
+    second half of the run.
+
+    The balance of angular momentum, without the contact law: it holds for any motion of the bed.
+    """
+    spheres, rows = tables["particles"], tables["rows"]
+    m, r = spheres["mass"], spheres["radius"]
+    momentum = m * (spheres["z"] * spheres["vx"] - spheres["x"] * spheres["vz"])
+    if "omega_y" in spheres:
+        momentum += 0.4 * m * r**2 * spheres["omega_y"]
+    bed = pd.DataFrame({"arm": m * spheres["x"], "momentum": momentum}).groupby(spheres["step"]).sum()
+    bed = bed[bed.index >= 0.5 * bed.index[-1]]
+    times, seconds = p.time_at(bed.index.to_numpy()), np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
+    during = (rows["step"] > bed.index[0]) & (rows["step"] <= bed.index[-1])
+    torque = np.average(rows.loc[during, check.row], weights=seconds[during])
+    growth = bed["momentum"].iloc[-1] - bed["momentum"].iloc[0]
+    arm = np.average(bed["arm"].rolling(2).mean().iloc[1:], weights=np.diff(times))
+    return float(torque + growth / (times[-1] - times[0])), float(p.scene.gravity * arm)
+
+
 def single_rebound(case: SceneCase, s: ReboundSpeed) -> float:
     """Speed [m/s] at which one sphere leaves a flat target, by theory alone."""
     shot = next(fill for fill in case.parts.random_fills if fill.name == s.fill).particles[0]
@@ -346,6 +368,8 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 expected = single_rebound(p.case, check)
                 speed, count = rebounds(tables["particles"], check.speed, expected)
                 rows.append(_row("rebound_speed", speed, expected, 1e-3, count=count))
+            case TorqueOfBed() if many and p.scene.gravity and not p.model.rolling:  # whose torque is no force
+                rows.append(_row("torque_of_the_bed", *bed_torque(p, check, tables), 0.01))
             case Unloading():
                 put_in, back = works_of_wall(p, check, tables["rows"])
                 rows.append(_below("loading_stiffness", *stiffness(p, check, tables["rows"])))
