@@ -64,6 +64,7 @@ def test_the_plugin_exports_only_the_functions_that_it_takes_over():
     assert [re.match(r"_ZN9LAMMPS_NS\d+([A-Za-z]+?)\d", name)[1] for name in members] == [
         *["FixGravity"] * 2,
         "DeleteAtoms",
+        "FixMoveMesh",
         *["FixWallGran"] * 2,
         *["FixNVESphere"] * 2,
         *["AtomVecSphere"] * 2,

@@ -38,9 +38,10 @@ def test_porosity_counts_the_part_of_a_sphere_that_reaches_through_a_face():
     """A sphere on an upright edge of the room lies with a quarter at each of the four edges."""
     region = {"x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "10 mm"]}
     p = plan(parse(periodic(measure=[{"name": "void", "kind": "porosity", "region": region}])))
+    rows = pd.DataFrame({"step": [0], "particles": [1]})
     for place in ([-10e-3, -10e-3], [10e-3, 10e-3], [10.2e-3, 3e-3], [0.0, -9e-3], [0.0, 0.0]):
         columns = {"step": 0, "id": 1, "type": 1, "mass": 1.0, "radius": 4e-3, "x": place[0], "y": place[1], "z": 5e-3}
-        (found,) = measures.curves(p, {"particles": pd.DataFrame([columns])})["void"]
+        (found,) = measures.curves(p, {"particles": pd.DataFrame([columns]), "rows": rows})["void"]
         assert found == pytest.approx(1 - 4 / 3 * math.pi * 4e-3**3 / (SIZE**2 * 10e-3), abs=1e-4)
 
 

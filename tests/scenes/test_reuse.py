@@ -62,7 +62,7 @@ def test_impacts_run_again_for_what_the_engine_reads_alone(host, tmp_path, monke
         ('source = "phys', 'source = "a phys'),
     ):
         assert old in IMPACTS and again(IMPACTS.replace(old, new)) == 0
-    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    monkeypatch.setattr(paths, "product_hash", lambda **_: "another page")
     assert again(IMPACTS) == 0
     for old, new in (
         ('name = "thornton"', 'name = "cavity"'),
@@ -113,7 +113,7 @@ def test_a_scene_runs_again_for_what_the_engine_reads_alone(host, tmp_path, monk
     assert again(scene(output={"rows": 10, "particles": 2, "color": "z"})) == 0
     assert again(scene(scene={"measure": [HEIGHT]})) == 0 and stored("measures")
     assert again(scene()) == 0 and not stored("measures")
-    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    monkeypatch.setattr(paths, "product_hash", lambda **_: "another page")
     assert again(scene()) == 0
     for changes in (
         {"law": {"yield_pressure_ratio": 2.5}},
@@ -144,7 +144,7 @@ def test_a_sweep_of_impacts_is_judged_anew_without_a_start(tmp_path, monkeypatch
     assert first.passed and runs == 2
     strict, runs = swept(IMPACTS.replace("contact_time = 5e-3", "contact_time = 1e-12"))
     assert not strict.passed and runs == 0 and strict.table["e_n"].equals(first.table["e_n"])
-    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    monkeypatch.setattr(paths, "product_hash", lambda **_: "another page")
     later, runs = swept(IMPACTS.replace('title = "Steel', 'title = "Any steel'))
     assert later.passed and (later.ran, runs) == (2, 0)
     assert swept(IMPACTS.replace("yield_pressure_ratio = 2.8", "yield_pressure_ratio = 2.7"))[1] == 2
