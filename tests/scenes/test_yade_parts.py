@@ -105,31 +105,6 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
     assert np.abs(other[:, 2]).max() > 1e-3 and found["yade"].phases.equals(found["liggghts"].phases)
 
 
-@pytest.mark.yade("module")
-@pytest.mark.liggghts
-def test_planes_across_a_periodic_room_throw_spheres_back_on_both_sides_as_in_liggghts(tmp_path):
-    """At the faces of the room and some periods on; YADE has the planes as triangles larger than the room."""
-    sides = [FLOOR | {"name": "left", "axis": "x", "at": "-3 mm"}, FLOOR | {"name": "back", "axis": "y", "at": "4 mm"}]
-    # x, y, z [mm], v_x, v_y [m/s]: against one side of left, over a face against the other one, against both planes
-    flights = [(-6, -8, 2, 1, 0), (8, -8, 36, 2, -3), (0, 0, 15, -1, 0.5), (4, 8, 8, -1, -2)]
-    body = [
-        {"name": f"ball{n}", "material": "glass", "radius": "1.5 mm", "position": [f"{c} mm" for c in (x, y, z)]}
-        | {"velocity": [f"{u} m/s", f"{v} m/s", "0 m/s"]}
-        for n, (x, y, z, u, v) in enumerate(flights)
-    ]
-    data = parts(wall=[FLOOR, *sides], fill=[], body=body, periodic=True)
-    data["output"], data["numerics"] = {"rows": 20, "particles": 20, "loads": True}, {"time_step": "1e-5 s"}
-    path = write_case(data, tmp_path)
-    ours, theirs = (run(path, engine=tool, out=tmp_path / tool).results for tool in ("yade", "liggghts"))
-    one, other = (r.particles.set_index(["step", "id"]) for r in (ours, theirs))
-    apart = (one[["x", "y", "z"]] - other[["x", "y", "z"]]).to_numpy()
-    assert np.abs(apart - 0.02 * np.round(apart / 0.02)).max() < 2e-6  # LIGGGHTS moves spheres by a period later
-    assert np.abs(one[["vx", "vy"]] - other[["vx", "vy"]]).to_numpy().max() < 1e-3
-    for name, axis in (("left", "x"), ("back", "y")):
-        force = theirs.rows[f"{name}_force_{axis}"]
-        assert force.min() < 0 < force.max() and np.abs(ours.rows[force.name] - force).max() < 1e-3 * force.max()
-
-
 def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two():
     """Of a pair that its MatchMaker does not name YADE takes the mean of two angles."""
     data = parts() | {"contact": {"friction": 0.3, "wall_friction": 0.6}}
