@@ -62,7 +62,7 @@ def small(data: dict) -> dict:
     few = {"output": data.get("output", {}) | {"rows": 20, "particles": 5}, "numerics": {"error": 0.1}}
     scene = data["scene"] | SMALL[data["scene"]["kind"]]
     if "settle_time" in scene:  # finer spheres, which the plate of a wide box would not meet
-        scene |= {"settle_time": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
+        scene |= {"settle_time": "1 ms", "box": ["0.13 mm", "0.13 mm", "0.8 mm"], "count": 46, "height": "0.3 mm"}
     if "phase" in scene:
         duration = f"{0.03 / len(scene['phase'])} s"
         scene |= {"phase": [phase | {"duration": duration} for phase in scene["phase"]]}
