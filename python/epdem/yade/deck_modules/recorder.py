@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from yade import O
 from yade.utils import sumForces, sumTorques
+from yade.wrapper import PyRunner
 
 from .spheres import Fill, Spheres
 
@@ -100,6 +101,7 @@ class Recorder:
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
         self.means = ["wall_power"] * bool(moving) + [f"{kind}_{axis}" for kind in kinds for axis in "xyz"]
         self._sums, self._samples = np.zeros(len(self.means)), 0
+        self.starts = PyRunner(command="recorder.start()", iterPeriod=1, initRun=True, dead=True)  # an engine
         self.strain()  # from now on
         self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
         self.values: dict[str, float] = {}  # of the last row
@@ -163,10 +165,17 @@ class Recorder:
     def _step(self, fills: Sequence[Fill]) -> None:
         for fill in fills:
             fill.pour(O.iter - self._begin)
-        for state in self.spheres.new:  # YADE keeps velocities of half a step before
-            state.vel = np.array(tuple(state.vel)) - 0.5 * O.dt * self.gravity
-        self.spheres.new.clear()
+        self.starts.dead = not self.spheres.new
         O.step()
+
+    def start(self) -> None:
+        """Between forces and motion: new spheres get velocity and spin of half a step before, which YADE keeps. One at
+        rest under its weight and the forces on it stays at rest."""
+        for k, state in self.spheres.new:
+            force, torque = (np.array(tuple(x)) for x in (O.forces.f(k), O.forces.t(k)))
+            state.vel = np.array(tuple(state.vel)) - 0.5 * O.dt * (force / state.mass + self.gravity)
+            state.angVel = np.array(tuple(state.angVel)) - 0.5 * O.dt * torque / state.inertia[0]
+        self.spheres.new.clear()
 
     def finish(self) -> None:
         """The row of the last step."""

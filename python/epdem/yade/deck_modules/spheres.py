@@ -41,7 +41,7 @@ class Spheres:
         self.ids: list[int] = []  # bodies
         self.states: list[Any] = []
         self.table = np.zeros((0, 5))  # number from 1, type, radius [m], mass [kg], 1: not frozen
-        self.new: list[Any] = []  # states of free spheres that have made no step
+        self.new: list[Any] = []  # (body, state) of free spheres that have made no step
 
     def add(self, rows: Iterable[Sequence[float]]) -> None:
         """Add spheres: x, y, z, radius [m], type, velocity [m/s], spin [rad/s], 1: frozen."""
@@ -52,7 +52,7 @@ class Spheres:
             self.ids.append(O.bodies.append(body))
             self.states.append(body.state)
             if not frozen:
-                self.new.append(body.state)
+                self.new.append((self.ids[-1], body.state))
             self.number[self.ids[-1]] = self._came
             self._came += 1
             new.append((self._came, kind, radius, body.state.mass, not frozen))
