@@ -114,7 +114,8 @@ class StopCondition:
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes nearer if
     `nears`. opposite: formula of the force on the wall against a punch. stop: commands that bring the walls to rest.
-    void: formula of the height of the void in a pressed bed, which ends the run at 0; "": no bed is pressed.
+    void: formula of the height of the void in a pressed bed, which ends the run at 0; "": no bed is pressed. gone:
+    steps with looks before a continued run.
     """
 
     first: int
@@ -128,6 +129,7 @@ class StopCondition:
     nears: bool = False
     opposite: str = ""
     stop: tuple[str, ...] = ()
+    gone: int = 0
 
     @property
     def steps(self) -> int:

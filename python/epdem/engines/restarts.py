@@ -76,5 +76,5 @@ def later(stop: StopCondition | None, steps: int, every: int) -> StopCondition |
     """The condition of a phase of which `steps` have run, with rows of `every` steps."""
     if stop is None:
         return None
-    looked = max(0, steps - stop.first) // every
-    return replace(stop, first=max(0, stop.first - steps), rows=stop.rows - looked)
+    gone = max(0, steps - stop.first)
+    return replace(stop, first=max(0, stop.first - steps), rows=stop.rows - gone // every, gone=gone)
