@@ -18,7 +18,12 @@ CASE = {
     "materials": {"glass": GLASS},
     "law": {"name": "thornton"},
     "viscous": {"restitution": 0.3},
-    "contact": {"friction": 0.5, "tangential_restitution": 0.3},
+    # rolling friction, without which spheres roll on for seconds
+    "contact": {
+        "friction": 0.5,
+        "tangential_restitution": 0.3,
+        "rolling": {"model": "epsd2", "coefficient": 0.1},
+    },
     "scene": {
         "kind": "parts",
         "room": {"x": ["-6 mm", "6 mm"], "y": ["-6 mm", "6 mm"], "z": ["0 mm", "20 mm"]},
@@ -35,7 +40,7 @@ CASE = {
                 "count": 30,
             }
         ],
-        "phase": [{"name": "rest", "duration": "0.5 s"}],
+        "phase": [{"name": "rest", "duration": "0.8 s"}],
     },
     "output": {"contacts": 2, "particles": 2, "loads": True, "energy": True},
     "numerics": {"time_step": "5 us"},
@@ -44,7 +49,7 @@ PRESS = 0.3  # [N]
 PRESSED = copy.deepcopy(CASE)  # to overlaps of half a radius, where contacts grow
 PRESSED["law"] = {"name": "cavity", "finite_strain": True, "compaction": True}
 PRESSED["viscous"] = {"restitution": 0.14}
-PRESSED["contact"]["tangential_restitution"] = 0.14
+PRESSED["contact"] = {"friction": 0.5, "tangential_restitution": 0.14}
 LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "13 mm"], "size": ["8 mm", "8 mm"]}
 PRESSED["scene"]["wall"].append(LID | {"material": "glass"})
 PRESSED["scene"]["fill"][0]["region"]["z"] = ["0 mm", "12 mm"]
@@ -56,7 +61,7 @@ PRESSED["scene"]["phase"] = [
         "until": {"wall": "lid", "force": f"{PRESS} N", "after": "0 s"},
         "move": [{"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}],
     },
-    {"name": "rest", "duration": "0.2 s"},
+    {"name": "rest", "duration": "0.4 s"},
 ]
 ENGINES = [
     pytest.param("liggghts", marks=pytest.mark.liggghts),
