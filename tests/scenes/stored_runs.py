@@ -66,7 +66,7 @@ def data_of(name: str) -> dict:
     data = read_toml(CASES / f"{case}.toml")
     without = {key: value for key, value in data.items() if key != "contact"}
     law = {"name": "thornton"} if case == "compaction_powder" else data["law"]
-    return without | {"law": law, "scene": data["scene"] | scene, "output": OUTPUT, "numerics": {"time_step": step}}
+    return without | {"law": law, "scene": data["scene"] | scene, "output": {**OUTPUT}, "numerics": {"time_step": step}}
 
 
 def is_of_run(path: Path, deck: Collection[str]) -> bool:
