@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Single spheres that come with a later phase: every key of them arrives in each host, and their places are free."""
 
+import re
+
 import numpy as np
 import pytest
 from parts_cases import FLOOR, parts
@@ -90,3 +92,29 @@ def test_a_late_body_in_a_wall_is_refused(place, walls, move, met):
     words = rf"scene\.body\.late\.position: at the begin of phase second the body overlaps {met}"
     with pytest.raises(CaseError, match=words):
         plan(parse(data))
+
+
+PRESS = {"wall": "lid", "kind": "press", "direction": "-z", "force": "50 mN", "highest_speed": "1 m/s"}
+LINEAR = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
+UNTIL = {"kinetic_energy": "1 J", "after": "1 ms"}  # holds at the first row after 1 ms
+
+
+@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize(
+    ("phase", "way"), [({"move": [PRESS]}, 2e-3), ({"move": [LINEAR], "until": UNTIL}, 1.2e-3)], ids=["driven", "until"]
+)
+def test_a_late_body_in_a_wall_whose_place_the_run_alone_knows_ends_the_run(engine, phase, way, tmp_path):
+    """A plate moves by 1 m/s from 30 mm on; without the motion the body of 1.5 mm is free in both cases."""
+    for off, met in ((2.1e-3, False), (1.0e-3, True)):
+        late = body("late", (0, 0, round(1e3 * (30e-3 - way - off), 6)), phase="second")
+        data = free(late, (0, 8, 5), wall=[FLOOR, LID])
+        data["scene"]["phase"] = [PHASES[0] | phase, PHASES[1]]
+        path = write_case(data, tmp_path)
+        if not met:
+            assert run(path, engine, out=tmp_path / "free").passed
+            continue
+        words = r"scene\.body\.late\.position: at the begin of phase second the body overlaps wall lid by (\S+) m"
+        with pytest.raises(EngineError, match=words) as error:
+            run(path, engine, out=tmp_path / "met")
+        depth = float(re.search(words, str(error.value))[1])
+        assert depth == pytest.approx(0.5e-3, abs=3e-5)  # the plate begins to move within a step of 2e-5 s

@@ -18,6 +18,7 @@ from ..impacts.prediction import predict
 from ..jobs.engine import Engine, Report, check_law, silent
 from ..jobs.stage import Tables, parts_hash
 from ..scenes.columns import named_rows, with_first_works
+from ..scenes.limits import refuse_bodies_in_moved_walls
 from ..scenes.model import Model
 from ..scenes.plan import Resumed, ScenePlan
 from ..scenes.plan import plan as plan_scene
@@ -111,10 +112,11 @@ class Host(Engine[Any, Any]):
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
         """The tables of a run, SI, without the frames of the steps `without`.
 
-        Raises EngineError for a frame that is missing or not whole.
+        Raises EngineError for a frame that is missing or not whole, and for a body that came into a wall.
         """
         out, own = folder / self.launcher.OUT, self.tables
         plan = plan.with_ends(log.ends(out), log.not_reached(out), log.held(out)) if plan.ends_early else plan
+        refuse_bodies_in_moved_walls(plan, log.ways(out))
         frames = Frames(plan, folder, own.kinds(plan), without)
         found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
         if plan.frames:

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
@@ -100,6 +101,13 @@ def held(out: Path) -> dict[str, tuple[int, float, float]]:
     text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
     found = re.findall(r"^phase (\w+) held at step (\d+): (\S+)(?: (\S+))?", text, re.M)
     return {name: (int(step), float(value), float(other or "nan")) for name, step, value, other in found}
+
+
+def ways(out: Path) -> dict[tuple[str, str], np.ndarray]:
+    """(phase, wall): the way [m] that a force has driven the wall before the phase, shape (3,)."""
+    text = out.read_text(encoding="utf-8", errors="replace")
+    found = re.findall(r"^phase (\w+) begins, wall (\w+) has moved by (\S+) (\S+) (\S+) m", text, re.M)
+    return {(phase, wall): np.array(way, float) for phase, wall, *way in found}
 
 
 def not_reached(out: Path) -> dict[str, str]:

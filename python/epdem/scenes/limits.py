@@ -2,8 +2,8 @@
 """Limits of a scene: a scene beyond them is refused before anything starts; beds that a press makes solid."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,11 +11,14 @@ import numpy.typing as npt
 from ..case.parts import FileFill, Parts, Sphere
 from ..case.scene import SceneCase
 from ..case.walls import ConeWall, CylinderWall, LinearMove, MeshWall, PlateWall, PressMove, RotateMove
-from ..errors import CaseError
+from ..errors import CaseError, EngineError
 from . import meshes
 from .filling import Insertion, mean_volume
 from .meshes import FloatArray
 from .timestep import highest_speed
+
+if TYPE_CHECKING:
+    from .plan import ScenePlan
 
 IntArray = npt.NDArray[np.int64]
 Named = list[tuple[str, Sphere]]  # the name of a sphere in messages, the sphere
@@ -221,30 +224,46 @@ def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> Floa
     return found
 
 
+def _in_wall(s: Parts, phase: str, walls: Mapping[str, FloatArray]) -> str | None:
+    """A sentence on a single sphere that comes into a wall with a phase; None: none does. walls: triangles [m] then."""
+    planes = [w for w in (*s.planes, *s.gates) if not w.phases or phase in w.phases]
+    for b in (b for b in s.later if b.phase == phase):
+        center = np.array(b.position)
+        found = {w.name: b.radius - abs(center["xyz".index(w.axis)] - w.at) for w in planes}
+        for name, corners in walls.items():
+            found[name] = float(depths(corners, center[None], np.array([b.radius]))[0])
+        for name, depth in found.items():
+            if depth > TOUCH * b.radius:
+                return (
+                    f"scene.body.{b.name}.position: at the begin of phase {phase} the body overlaps wall {name} by "
+                    f"{depth:.3g} m; move the body, or give it another phase"
+                )
+    return None
+
+
 def refuse_bodies_in_walls(s: Parts, triangles: dict[str, FloatArray]) -> None:
     """Raise CaseError for a single sphere that comes into a wall with a phase but the first.
 
-    A wall whose place at that time the run alone knows is not checked: one that a force drives, or that has moved in a
-    phase with a condition.
+    A wall whose place at that time the run alone knows is left to `refuse_bodies_in_moved_walls`: one that a force
+    drives, or that has moved in a phase with a condition.
     """
     for number, phase in enumerate(s.phase):
         before = [(p.moves, p.seconds) for p in s.phase[:number]]
         unknown = {name for p in s.phase[:number] if p.condition for name in p.moves}
-        coming = [b for b in s.later if b.phase == phase.name]
-        known = {name: x for name, x in triangles.items() if name not in unknown} if coming else {}
-        walls = meshes.at_end(before, known)
-        for b in coming:
-            center = np.array(b.position)
-            planes = [w for w in (*s.planes, *s.gates) if not w.phases or phase.name in w.phases]
-            found = {w.name: b.radius - abs(center["xyz".index(w.axis)] - w.at) for w in planes}
-            for name, corners in walls.items():
-                found[name] = float(depths(corners, center[None], np.array([b.radius]))[0])
-            for name, depth in found.items():
-                if depth > TOUCH * b.radius:
-                    raise CaseError(
-                        f"scene.body.{b.name}.position: at the begin of phase {phase.name} the body overlaps wall "
-                        f"{name} by {depth:.3g} m; move the body, or give it another phase"
-                    )
+        known = {name: x for name, x in triangles.items() if name not in unknown} if s.later else {}
+        if said := _in_wall(s, phase.name, meshes.at_end(before, known)):
+            raise CaseError(said)
+
+
+def refuse_bodies_in_moved_walls(p: "ScenePlan", ways: Mapping[tuple[str, str], FloatArray]) -> None:
+    """Raise EngineError for the same of a plan of a run. ways: (phase, wall) that a force drives, way [m] before it."""
+    begin = 0
+    for phase in p.phases if p.scene.later else ():
+        walls = meshes.at_end(p.motions_until(begin), p.triangles)
+        walls |= {wall: p.triangles[wall] + way for (name, wall), way in ways.items() if name == phase.name}
+        if phase.end > begin and (said := _in_wall(p.scene, phase.name, walls)):
+            raise EngineError(said)
+        begin = phase.end
 
 
 DENSE = 0.9  # relative density above which overlaps of spheres no longer describe the contacts

@@ -328,6 +328,12 @@ class ScenePlan:
         there = {"plastic_work": yields, "adhesive_work": adheres, "friction_work": slips, "friction_energy": slips}
         return tuple(name for name, present in there.items() if present and self.output.energy)
 
+    def driven_before(self, phase: str) -> list[str]:
+        """The walls that a force may have moved before a phase with which single spheres come."""
+        names = [p.name for p in self.phases]
+        earlier = self.phases[: names.index(phase)] if any(b.phase == phase for b in self.scene.later) else ()
+        return sorted({name for p in earlier for name, move in p.moves.items() if isinstance(move, PressMove)})
+
     def rotations(self, wall: str) -> list[RotateMove]:
         """The rotations of a wall of triangles: of its surface, and in each phase."""
         moves = (phase.moves.get(wall) for phase in self.phases)

@@ -18,7 +18,7 @@ from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import LIGGGHTS, refuse
 from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words
-from .scene_walls import DeckWall, force, height, meshes, motions, plane, restart_commands, stop_commands
+from .scene_walls import DeckWall, force, height, meshes, motions, plane, restart_commands, stop_commands, way
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -62,8 +62,9 @@ class PhaseCommands:
     """A phase. data: file of the spheres that come with it; None: none do. placed: spheres that were placed before.
 
     steps: that are left. time_step [s]: None: that of the phase before. places: formulas of the spheres that lie in the
-    places of single ones. fills: key, id, and limits of the region that has to be empty. gates: planes that come with
-    it. commands: which set walls in motion. ends: fixes that end with it. restart_commands: where a restart is due.
+    places of single ones. driven: walls that a force has driven, words of their ways. fills: key, id, and limits of the
+    region that has to be empty. gates: planes that come with it. commands: which set walls in motion. ends: fixes that
+    end with it. restart_commands: where a restart is due.
     """
 
     run: PhaseSteps
@@ -72,6 +73,7 @@ class PhaseCommands:
     data: str | None
     placed: int
     places: tuple[tuple[str, str], ...]
+    driven: tuple[tuple[str, list[str]], ...]
     fills: tuple[tuple[str, str, str], ...]
     gates: tuple[DeckWall, ...]
     commands: tuple[str, ...]
@@ -121,6 +123,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             data=_data_file(p, run.name),
             placed=p.count_before(run.name),
             places=taken_places(p, run.name, "radius"),
+            driven=tuple((name, way(p, name)) for name in p.driven_before(run.name)),
             fills=tuple(_fills(p, run.name)),
             gates=tuple(gates[name] for name in run.added),
             commands=tuple(motions(p, number)) if number else (),

@@ -268,6 +268,12 @@ def height(p: ScenePlan, bed: PressedBed) -> str:
     return bed_height(bed, place)
 
 
+def way(p: ScenePlan, name: str) -> list[str]:
+    """The way of a wall along x, y and z between two runs."""
+    keys = _changing(p, name)
+    return [f"$(v_{wall_id(name)}_{axis}:%.17g)" if axis in keys else "0" for axis in "xyz"]
+
+
 def stop_commands(p: ScenePlan, phase: Phase) -> list[str]:
     """Commands that leave the walls that move in a phase where they are."""
     names = [f"{wall_id(name)}_{key}" for name in phase.moves for key in _changing(p, name)]

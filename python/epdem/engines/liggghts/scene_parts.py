@@ -80,7 +80,8 @@ class DeckPhase:
     """A phase: commands at its start and its end, and commands of a run that continues in it.
 
     steps: remaining ones. gates: planes that come with the phase. bodies: file of the single spheres that come with it,
-    "": none do; places: formulas of the spheres that lie in their places. power: formula of the power of what moves.
+    "": none do; places: formulas of the spheres that lie in their places; driven: walls that a force drives, words of
+    their ways. power: formula of the power of what moves.
     vibrations: (variable, formula) of walls that vibrate.
     restart_commands: where a restart file is due.
     """
@@ -94,6 +95,7 @@ class DeckPhase:
     end_commands: tuple[str, ...]
     bodies: str
     places: tuple[tuple[str, str], ...]
+    driven: tuple[tuple[str, list[str]], ...]
     power: str
     vibrations: tuple[tuple[str, str], ...]
     stop: StopCondition | None
@@ -186,6 +188,16 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
     return next(iter(presses), None)
 
 
+def _middle(p: ScenePlan, name: str) -> list[float]:
+    """The point of a wall that a force drives, which LIGGGHTS moves along."""
+    corners = p.triangles[name].reshape(-1, 3)
+    return (0.5 * (corners.min(axis=0) + corners.max(axis=0))).tolist()
+
+
+def _way(p: ScenePlan, name: str) -> list[str]:
+    return [f"$(f_{decks.wall_id(name)}[{k}]-({decks.number(x)}))" for k, x in enumerate(_middle(p, name), 7)]
+
+
 def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
     """The walls of triangles."""
     pressed, formulas = {name for bed in p.pressed for name in (bed.wall, bed.against)}, tubes(p)
@@ -207,9 +219,7 @@ def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
         press = _press(p, name)
         if press is not None:
             style = "/stress/servo"
-            corners = p.triangles[name].reshape(-1, 3)
-            middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-            words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.direction)}"
+            words += f" com {_words(_middle(p, name))} ctrlPV force axis {_words(press.direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
         found.append(SurfaceMesh(decks.wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
@@ -277,6 +287,7 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             ),
             bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
             places=taken_places(p, run.name, "r"),
+            driven=tuple((name, _way(p, name)) for name in p.driven_before(run.name)),
             power=power(p, run) if with_power else "",
             vibrations=tuple(_vibrations(before, run, new)),
             stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop),
