@@ -112,6 +112,7 @@ CONTACTS = {
     "partial slip 2": {"friction": 0.4, "tangential": "partial_slip_2"},
     "tangential dashpot": {"friction": 0.4, "tangential": "history", "tangential_restitution": 0.6},
     "cohesion": {"cohesion": "1e3 J/m^3"},
+    "cohesion with friction": {"friction": 0.4, "cohesion": "1e3 J/m^3"},
 }
 DASHPOTS = {
     "no dashpot": {},

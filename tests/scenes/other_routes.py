@@ -2,6 +2,7 @@
 """Numbers of a scene's tables by routes that the product does not take."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from epdem.scenes.columns import last_frame
@@ -36,6 +37,35 @@ def assert_forces(p, contacts, spheres):
         dent = law.residual_overlap(row.delta_max)
         expected = float(law.unloading_force(row.overlap, row.delta_max)) if row.overlap > dent else 0.0
         assert row.force == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(found).max())
+
+
+def assert_coulomb(p, contacts, spheres):
+    """No row has friction above mu times the load, the normal force with all dashpots: without cohesion, and with the
+    pull-off forces of Johnson, Kendall and Roberts (1971). The load of thornton_ning has a history, and is left out."""
+    if contacts.empty or p.model.law == "thornton_ning":
+        return
+    ball = spheres.set_index(["step", "id"])
+    one, other = (
+        ball.reindex(pd.MultiIndex.from_frame(contacts[["step", k]]))[["radius", "type"]].to_numpy() for k in "ij"
+    )
+    walls = contacts["wall"].map(p.wall_types).to_numpy()
+    other = np.where(contacts[["j"]].to_numpy() > 0, other, np.column_stack([np.full(len(other), np.inf), walls]))
+    pair = one[:, 1].astype(int) - 1, other[:, 1].astype(int) - 1
+    normal, force = (contacts[[f"{name}_{axis}" for axis in "xyz"]].to_numpy() for name in ("normal", "force"))
+    load = (normal * force).sum(axis=1)
+    friction = np.linalg.norm(force - load[:, None] * normal, axis=1)
+    if p.model.adheres:
+        load += 3 * np.pi * np.array(p.model.adhesion)[pair] / (1 / one[:, 0] + 1 / other[:, 0])
+    if p.model.cohesion:  # on the circle in which both bodies cut each other, so far from the centre of the first one
+        a, delta = one[:, 0], contacts["overlap"].to_numpy()
+        b = np.where(np.isinf(other[:, 0]), a, other[:, 0])
+        d = a + b - delta
+        away = np.where(np.isinf(other[:, 0]), a - delta, (d**2 + a**2 - b**2) / (2 * d))
+        load += p.model.cohesion * np.pi * (a**2 - away**2)
+    most = np.array(p.model.friction)[pair] * np.abs(load)
+    worst = friction - most * (1 + 1e-9)
+    digits = 1e-9 * np.abs(force).max()  # of files, whose normals are those of rounded places
+    assert (worst <= digits).all(), contacts[worst > digits]
 
 
 def porosity(p, frame):

@@ -14,12 +14,13 @@ from itertools import pairwise
 from typing import Literal, get_args, get_origin
 
 import numpy as np
+import pandas as pd
 import pytest
 import tomlkit
 from features import AMOUNTS, CHOICES, DENSITY, MIXTURES, SLOTS, case_of, files
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
-from other_routes import assert_forces, assert_frames, porosity
+from other_routes import assert_coulomb, assert_forces, assert_frames, porosity
 from pydantic import BaseModel
 from scene_runs import restart_steps, run, write_case, write_deck
 
@@ -45,6 +46,7 @@ def with_key(key):
 
 
 ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
+COHESION = {"cohesion", "cohesion with friction"}
 NOT_LINEAR = {
     "phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves", "wall moves, then tilts"}
 }
@@ -59,8 +61,8 @@ SHARED_TYPES = {"contact": set(SLOTS["contact"]) - {"wall friction", "friction o
 # Features that exclude each other, and the sentence that says so. A case with none of these is never refused.
 EXCLUDED = [
     ({"law": {"johnson, one strength"}, "strength": {"hardness", "yield ratio"}}, "each the strength; keep one"),
-    (ADHESIVE | {"contact": {"cohesion"}}, "has its attraction already"),
-    ({"law": {"cavity, compaction"}, "contact": {"cohesion"}}, "contacts with law.compaction have no cohesion"),
+    (ADHESIVE | {"contact": COHESION}, "has its attraction already"),
+    ({"law": {"cavity, compaction"}, "contact": COHESION}, "contacts with law.compaction have no cohesion"),
     (ADHESIVE | {"contact": {"partial slip", "partial slip 2"}}, "laws with adhesion have 'history' only"),
     (ADHESIVE | {"measure": {"speeds of impacts"}}, "impact speeds follow from contacts without adhesion"),
     (FRAMELESS | {"measure": set(SLOTS["measure"]) - OF_ROWS}, "taken from frames"),
@@ -427,7 +429,8 @@ def assert_runs(tool, chosen, folder, ranks=1):
                 {m: mass for m, mass in expected.items() if mass}, rel=1e-6
             )
         assert_frames(p, tables)
-        if len(tables.get("contacts", [])) and chosen["dashpot"] == "no dashpot" and chosen["contact"] != "cohesion":
+        assert_coulomb(p, tables.get("contacts", pd.DataFrame()), tables["particles"])
+        if len(tables.get("contacts", [])) and chosen["dashpot"] == "no dashpot" and chosen["contact"] not in COHESION:
             assert_forces(p, tables["contacts"], tables["particles"])
     kind = SLOTS["measure"][chosen["measure"]] or {}
     if kind.get("kind") in ("force", "torque"):
