@@ -191,7 +191,7 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
 def _middle(p: ScenePlan, name: str) -> list[float]:
     """The point of a wall that a force drives, which LIGGGHTS moves along."""
     corners = p.triangles[name].reshape(-1, 3)
-    return (0.5 * (corners.min(axis=0) + corners.max(axis=0))).tolist()
+    return [0.5 * float(x) for x in corners.min(axis=0) + corners.max(axis=0)]
 
 
 def _way(p: ScenePlan, name: str) -> list[str]:
