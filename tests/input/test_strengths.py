@@ -9,6 +9,7 @@ import pytest
 
 from epdem.base.declarations import declarations
 from epdem.case import impact, scene
+from epdem.case.keys import keys_of
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -124,7 +125,7 @@ def test_a_hardness_above_that_of_an_elastic_body_names_key_and_units():
 
 def test_a_sweep_sets_a_hardness_in_place_of_the_yield_stress():
     data = read_toml(STEEL)
-    keys = points.keys_of(data)
+    keys = keys_of(data)
     values = points.axes({"materials.steel.hardness": "2 GPa..3 GPa:2"}, keys)["materials.steel.hardness"].values()
     points.assign(data, "materials.steel.hardness", values[1])
     assert data["materials"]["steel"]["hardness"] == "3 GPa" and "yield_stress" not in data["materials"]["steel"]

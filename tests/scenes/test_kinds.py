@@ -92,7 +92,7 @@ def test_the_file_of_a_kind_counts_from_the_case_and_goes_with_it(mill, tmp_path
         ({"diameter": "2 cm"}, "scene: a ball is larger than a quarter of the mill; give a larger diameter"),
         ({"walls": "tin"}, r"scene.walls = 'tin' is not defined; add \[materials.tin\]"),
         ({"count": 100_000}, r"scene.count = 100000: the spheres would fill .* at most 26%"),
-        ({"lifters": 3}, "scene.lifters = 3, unknown key; remove it or correct its spelling"),
+        ({"lifters": 3}, "scene.lifters = 3, unknown key; the nearest: scene."),
         ({"kind": "./kiln.toml.j2"}, "kiln.toml.j2: no such file"),
         (
             {"kind": "mill"},
@@ -125,7 +125,11 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
         ('material = "{{ walls }}"', 'material = "tin"', "scene.wall.shell.material = 'tin' is not defined"),
         ('["torque"]', '["torqe"]', "key_figure = 'torqe' is no row, measure or figure; there are kinetic_energy, "),
         ('["torque"]', '["heckel"]', "key_figure = 'heckel' is no row, measure or figure; there are"),
-        ('kind = "cylinder"', 'kind = "tube"', "scene of kind './mill.toml.j2': wall.0.kind = 'tube', must be one of"),
+        (
+            'kind = "cylinder"',
+            'kind = "tube"',
+            "scene of kind './mill.toml.j2', line 13: wall.0.kind = 'tube', must be one of",
+        ),
         ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
         ('wall = "shell"', 'wall = "hull"', "row.torque.wall = 'hull' is no wall that has a torque"),
     ],

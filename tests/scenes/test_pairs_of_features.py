@@ -25,6 +25,7 @@ from pydantic import BaseModel
 from scene_runs import restart_steps, run, write_case, write_deck
 
 from engines.lammps_decks import needs_lammps
+from epdem.case.keys import keys_of
 from epdem.case.scene import SceneCase, parse
 from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
@@ -35,7 +36,6 @@ from epdem.scenes import filling, measures
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
-from epdem.studies.sweep.points import keys_of
 from epdem.theory.cavity import FINITE_STRAIN
 from stored_decks import checked_deck
 
@@ -95,15 +95,14 @@ NOT_DRAWN = {
     "Stages": "of a press: test_press.py",
     "FloorLoad": ALONE,
     "BedRebound": ALONE,
+    "AtRest": ALONE,
     "MassFlow": ALONE,
     "ReboundSpeed": ALONE,
     "Unloading": ALONE,
     "TorqueOfBed": ALONE,
     "SceneCase": {"measured": "numbers beside those of a press: test_press.py"},
     "MeasuredDensities": "numbers beside those of a press: test_press.py",
-    "SceneMaterial": {
-        "surface_energy": "gives the work of adhesion, which is drawn: tests/decks/test_adhesive_case.py"
-    },
+    "LawMaterial": {"surface_energy": "gives the work of adhesion, which is drawn: tests/decks/test_adhesive_case.py"},
 }
 CHOOSES = ("kind", "model", "tangential")  # keys each value of which is a model of its own
 

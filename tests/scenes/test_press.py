@@ -23,6 +23,7 @@ from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 from epdem.studies.pages import scene_page, scene_sentences
+from epdem.studies.soften import soften
 from epdem.studies.sweep.table import numbers_of, unit
 
 SIDE, HEIGHT, RADIUS, COUNT = 0.5e-3, 1.4e-3, 50e-6, 150
@@ -103,6 +104,21 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     kept = found["plastic"] + found["elastic"]
     assert kept.iloc[:5].to_numpy() == pytest.approx(found["work"].iloc[:5], rel=0.1)
     assert len(spheres[spheres["step"] == found["step"].iloc[-1]]) == COUNT
+
+
+@pytest.mark.liggghts
+def test_a_softened_press_reaches_the_densities_of_the_press(pressed):
+    """Strain and inertia grow: within 0.02. With the pressures of the press itself densities are higher by 0.2."""
+    path = pressed.folder.parent / "soft.toml"
+    path.write_text(soften(pressed.folder.parent / "case.toml", 10.0).text)
+    soft = run(path, out=path.with_suffix(""))
+    assert soft.plan.time_step > 2 * pressed.plan.time_step
+    hard, soft = (x.results.tables["stages"].set_index("phase") for x in (pressed, soft))
+    reached = soft["reached"].dropna().to_numpy()
+    assert reached == pytest.approx(np.array(PRESSURES) / 10**0.8, rel=0.02)  # faster beside its strength
+    names = ["stage1", "stage2", "release1", "release2"]
+    difference = (soft["relative_density"] - hard["relative_density"])[names].to_numpy()
+    assert np.abs(difference).max() < 0.02
 
 
 @pytest.mark.liggghts

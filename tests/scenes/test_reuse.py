@@ -2,6 +2,8 @@
 """Every host starts again for what changes its input, and for nothing else: a test counts its starts."""
 
 import copy
+import errno
+import re
 from pathlib import Path
 
 import h5py
@@ -11,6 +13,7 @@ from scene_runs import write_case
 
 from epdem.base import paths
 from epdem.engines import engine, scene_engine
+from epdem.errors import CaseError
 from epdem.impacts.run import run as run_impacts
 from epdem.scenes import results
 from epdem.scenes.run import run as run_scene
@@ -126,6 +129,62 @@ def test_a_scene_runs_again_for_what_the_engine_reads_alone(host, tmp_path, monk
     again(scene())
     compiled_again(tool, tmp_path, monkeypatch)
     assert again(scene()) == 1
+
+
+@pytest.mark.parametrize("host", HOSTS)
+def test_a_disk_that_is_full_at_the_end_costs_no_second_run(host, tmp_path, monkeypatch):
+    """The results could not be stored: the next run makes them from the frames; not from those of other inputs, and
+    not if a frame is missing."""
+    tool, starts = counted(scene_engine(host), monkeypatch)
+
+    def full(*words):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    def ends_on_a_full_disk(out):
+        with monkeypatch.context() as disk, pytest.raises(OSError, match="No space"):
+            disk.setattr("epdem.scenes.results.write", full)
+            run_scene(write_case(scene(), tmp_path), tool, out=out)
+        starts.clear()
+
+    whole = run_scene(write_case(scene(), tmp_path), tool, out=tmp_path / "whole").results.tables
+    ends_on_a_full_disk(tmp_path / "out")
+    found = run_scene(write_case(scene(), tmp_path), tool, out=tmp_path / "out")
+    assert not starts and found.reused and found.results.tables.keys() == whole.keys()
+    assert all(table.equals(whole[name]) for name, table in found.results.tables.items())
+    ends_on_a_full_disk(tmp_path / "other")
+    run_scene(write_case(scene(law={"yield_pressure_ratio": 2.5}), tmp_path), tool, out=tmp_path / "other")
+    assert len(starts) == 1
+    ends_on_a_full_disk(tmp_path / "lacks")
+    max((tmp_path / "lacks").glob("particles.*"), key=lambda path: path.stat().st_mtime_ns).unlink()
+    run_scene(write_case(scene(), tmp_path), tool, out=tmp_path / "lacks")
+    assert len(starts) == 1
+
+
+@pytest.mark.parametrize("kind", ["impacts", pytest.param("scene", marks=pytest.mark.liggghts)])
+def test_results_of_other_inputs_move_aside_and_those_of_another_case_stay(kind, tmp_path):
+    out = tmp_path / "out"
+
+    def once(ratio, name="one", **how):
+        if kind == "scene":
+            path = write_case(scene(case={"name": name}, law={"yield_pressure_ratio": ratio}), tmp_path)
+            found = run_scene(path, scene_engine("liggghts"), out=out, **how)
+        else:
+            text = IMPACTS.replace("yield_pressure_ratio = 2.8", f"yield_pressure_ratio = {ratio}")
+            (tmp_path / "case.toml").write_text(re.sub('(?m)^name = "steel_wall"', f'name = "{name}"', text))
+            found = run_impacts(tmp_path / "case.toml", engines=[engine("embedded")], out=out, **how)
+        return [warning for warning in found.warnings if "previous" in warning], (out / "results.h5").read_bytes()
+
+    first = once(2.8)
+    assert not first[0] and once(2.8) == first and not (out / "previous").exists()
+    said, second = once(2.5)
+    assert "out: the results of other inputs, which were here, are in previous now" in said[0]
+    assert (out / "previous/results.h5").read_bytes() == first[1] != second
+    assert once(2.2)[0] and (out / "previous/results.h5").read_bytes() == second
+    with pytest.raises(CaseError, match="out: it has the results of case 'one'; choose another folder by --out, or"):
+        once(2.2, name="two")
+    assert not once(2.2, name="two", force=True)[0]
+    with pytest.raises(CaseError, match="it has the results of case 'two'"):
+        once(2.2)
 
 
 @pytest.mark.liggghts

@@ -13,13 +13,14 @@ import tomlkit
 
 from epdem.base.declarations import declarations
 from epdem.case.impact import parse
+from epdem.case.keys import keys_of
 from epdem.case.law import law_numbers
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.studies.sweep import points
 from epdem.studies.sweep.folder import Sweep
-from epdem.studies.sweep.points import assign, keys_of
+from epdem.studies.sweep.points import assign
 from epdem.studies.sweep.run import check, plan
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 from ..base.files import write_text
 from ..case import impact as impact_case
 from ..case import scene as scene_case
+from ..case.keys import Key, entry, keys_of
 from ..case.toml import LoadedCase, portable_text
 from ..case.units import to_si
 from ..errors import CaseError
@@ -37,7 +38,7 @@ class _File:
         name = given.get("name", self.kind) if isinstance(given, dict) else self.kind
         header = {"name": name, "title": name, "source": "made in Python"}
         data = with_units({"case": header | given if isinstance(given, dict) else given} | tables, {})
-        self._read(tomlkit.dumps(with_units(data, points.keys_of(data))), name)
+        self._read(tomlkit.dumps(with_units(data, keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
         self.text, self.place = text, path
@@ -71,9 +72,9 @@ class _File:
             try:
                 points.assign(data, name, with_units(value, {}, name))
             except (TypeError, ValueError, LookupError):  # a name below a value, or beyond the end of a list
-                points.require_key(name, points.keys_of(before), "replace")
+                points.require_key(name, keys_of(before), "replace")
                 raise
-        names = points.keys_of(data)  # with the keys of a law or kind that the changes choose
+        names = keys_of(data)  # with the keys of a law or kind that the changes choose
         for name, value in changes.items():
             if not any(key.startswith(f"{name}.") for key in names):
                 points.require_key(name, names, "replace")
@@ -95,12 +96,12 @@ class _File:
                         field.alias or name: getattr(value, name) for name, field in type(value).model_fields.items()
                     }
                     value = named | (value.model_extra or {})
-                value = value[int(part) if isinstance(value, list) else part]
+                value = value[entry(value, part) if isinstance(value, list) else part]
         except (LookupError, TypeError, ValueError):
-            known = points.keys_of(tomllib.loads(self.text))
+            known = keys_of(tomllib.loads(self.text))
             points.require_key(key, known, "case")
             raise CaseError(f"case: {key!r} is not given and has no default") from None
-        unit = points.keys_of(tomllib.loads(self.text)).get(key, points.Key()).unit
+        unit = keys_of(tomllib.loads(self.text)).get(key, Key()).unit
         return to_si(value, unit) if unit and isinstance(value, str) else value
 
     @property

@@ -76,6 +76,7 @@ def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
 
 LOCK, MARKER = ".epdem.lock", ".epdem.json"
 PATIENCE = 20.0  # [s] for the engine of a run that was killed
+RESULTS, PREVIOUS = ("results.h5", "results.csv", "report.html", "*.png", "*.svg", "*.pdf"), "previous"
 # Names that a run may write, in the folder or below it.
 OUTPUTS = re.compile(
     r"(in|results|out|particles|contacts|triangles|restart|picture|path)\..*|(contacts_|wall_contacts|scene|stress_).*"
@@ -94,22 +95,25 @@ def results_folder(out: Path | None, *names: str) -> Path:
 class ResultsFolder:
     """A folder that this process may write to; `foreign` are the files in it that are the user's.
 
-    versions: of the programs that made its files, by name; none where no run has noted them.
+    versions: of the programs that made its files, by name; none where no run has noted them. job: the name of the case
+    whose results it has, and the hash of the inputs of its last run.
     """
 
     folder: Path
     foreign: frozenset[str] = field(default_factory=frozenset)
     versions: dict[str, str] = field(default_factory=dict)
+    job: dict[str, str] = field(default_factory=dict)
 
-    def note(self, versions: dict[str, str]) -> None:
-        """Keep the versions of the programs that are about to write, through a crash too."""
+    def note(self, versions: dict[str, str], **job: str) -> None:
+        """Keep the versions of the programs that are about to write, and their job, through a crash too."""
         self.versions.clear()
         self.versions.update(versions)
+        self.job.update(job)
         self.mark(ended=False)
 
     def mark(self, *, ended: bool) -> None:
         """Write the marker of the folder."""
-        content = {"foreign": sorted(self.foreign), "versions": self.versions, "ended": ended}
+        content = {"foreign": sorted(self.foreign), "versions": self.versions, "job": self.job, "ended": ended}
         write_text(self.folder / MARKER, json.dumps(content, indent=1))
 
     def remove(self, *patterns: str) -> None:
@@ -117,6 +121,17 @@ class ResultsFolder:
         for name in _names(self.folder) - self.foreign:
             if any(fnmatch(name, pattern) for pattern in patterns):
                 (self.folder / name).unlink()
+
+    def set_aside(self) -> list[str]:
+        """Move the results of the earlier run to PREVIOUS, in place of those there; a sentence on it, or none."""
+        names = {n for n in _names(self.folder) - self.foreign if any(fnmatch(n, x) for x in RESULTS) and "/" not in n}
+        if RESULTS[0] not in names:
+            return []
+        self.remove(f"{PREVIOUS}/*")
+        for name in names:
+            (self.folder / PREVIOUS).mkdir(exist_ok=True)
+            (self.folder / name).replace(self.folder / PREVIOUS / name)
+        return [f"{self.folder}: the results of other inputs, which were here, are in {PREVIOUS} now"]
 
 
 Known = dict[str, Any]  # content of the marker
@@ -129,11 +144,12 @@ def stored_results(folder: Path) -> ResultsFolder:
 
 
 @contextlib.contextmanager
-def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> Iterator[ResultsFolder]:
+def claim(folder: Path, *, force: bool = False, files: Collection[str] = (), case: str = "") -> Iterator[ResultsFolder]:
     """Keep `folder` (made where it is missing) for one run, until the block ends; blocks of one process may nest.
 
     Raises CaseError if another process is at work in it, or if it holds files of the user's where a run would write,
-    `files` among them; with `force` these may be overwritten, never removed.
+    `files` among them, or results of another `case` than this; with `force` all these may be overwritten, and files of
+    the user's are never removed.
     """
     place = folder.resolve()
     if place in _held:
@@ -147,7 +163,7 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
         with (folder / LOCK).open("a+") as lock:
             _lock(folder, lock)
             _await_engines(folder, place)
-            yield from _claimed(folder, place, force, files)
+            yield from _claimed(folder, place, force, files, case)
     except OSError as error:
         if error.errno and not error.filename:  # a full disk, while a file was written that was open
             raise OSError(error.errno, error.strerror, str(folder)) from None
@@ -158,7 +174,7 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
                 path.rmdir()
 
 
-def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> Iterator[ResultsFolder]:
+def _claimed(folder: Path, place: Path, force: bool, files: Collection[str], case: str) -> Iterator[ResultsFolder]:
     try:
         for path in _folders(folder):
             remove_stale(path)
@@ -166,8 +182,13 @@ def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> 
         foreign = _foreign(folder, known)
         if not force:
             _refuse(folder, foreign, files, known is not None)
-        results = ResultsFolder(folder, frozenset(foreign), (known or {}).get("versions", {}))
-        results.note(dict(results.versions))
+        versions, job = ((known or {}).get(key, {}) for key in ("versions", "job"))
+        if case and not force and job.get("case", case) != case and (folder / RESULTS[0]).exists():
+            raise CaseError(
+                f"{folder}: it has the results of case {job['case']!r}; choose another folder by --out, or add --force"
+            )
+        results = ResultsFolder(folder, frozenset(foreign), versions, job)
+        results.note(dict(versions), **({"case": case} if case else {}))
         _held[place] = results
         yield results
     finally:

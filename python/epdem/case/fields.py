@@ -48,6 +48,15 @@ class Hardness(Quantity):
         return super().read(f"{to_si(f'{number} Pa', 'Pa') * VICKERS!r} Pa")
 
 
+@dataclass(frozen=True)
+class YieldStress(Quantity):
+    """A yield stress [Pa]; "inf Pa" of a material that never yields."""
+
+    def read(self, value: object) -> float:
+        return np.inf if value == NEVER else super().read(value)
+
+
+NEVER = "inf Pa"
 Length = Annotated[float, Quantity("m", above=0.0)]
 Speed = Annotated[float, Quantity("m/s", above=0.0)]
 Pressure = Annotated[float, Quantity("Pa", above=0.0)]
@@ -128,15 +137,16 @@ class Material(Frozen):
     """Elastic constants, density, (if the law yields) the strength and (if it adheres) the surface energy, of which the
     work of adhesion of a pair is 2 sqrt(gamma_i gamma_j); SI.
 
-    The strength is one of: the yield stress in simple compression; the hardness, which is load over projected area
-    ("1.9 GPa") or Vickers's number ("180 HV"); yield_ratio, which is the overlap at first yield of two like spheres
-    over their diameter (half of the number where a paper divides by the radius).
+    The strength is one of: the yield stress in simple compression ("inf Pa" of a material that never yields); the
+    hardness, which is load over projected area ("1.9 GPa") or Vickers's number ("180 HV"); yield_ratio, which is the
+    overlap at first yield of two like spheres over their diameter (half of the number where a paper divides by the
+    radius).
     """
 
     young_modulus: Pressure
     poisson_ratio: Annotated[float, Quantity("1", ge=-0.99, le=0.5, hint="percent?")]
     density: Annotated[float, Quantity("kg/m^3", above=0.0)]
-    yield_stress: Pressure | None = None
+    yield_stress: Annotated[float, YieldStress("Pa", above=0.0)] | None = None
     hardness: Annotated[float, Hardness("Pa", above=0.0)] | None = None
     yield_ratio: Annotated[float, Quantity("1", above=0.0, le=0.1, hint="percent?")] | None = None
     surface_energy: Annotated[float, Quantity("J/m^2", ge=0.0)] | None = None

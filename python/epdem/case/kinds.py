@@ -40,6 +40,7 @@ from .units import refuse_unit
 BODY = "[scene]"  # the line at which the TOML of parts begins
 MOST = 32  # values of a key that is a list
 LARGEST = 1_000_000  # values of a list or characters of a text that a template makes, digits of a number
+MARK = "# line "  # of the kind's file, at the end of a line of a filled template
 PREFIX = "key_"  # of the attributes of keys, so that a kind may give a key any name
 HEAD = {"unit", "type", "above", "ge", "le", "values", "list", "default", "optional"}
 TYPES: dict[str, Any] = {"particles": Mixture, "count": Count, "material": Name, "bool": bool}
@@ -222,20 +223,50 @@ class _Sandbox(SandboxedEnvironment):
         return super().call_binop(context, operator, left, right)
 
 
-@cache  # compiling takes far longer than filling
-def _template(body: str) -> jinja2.Template:
+@cache
+def _sandbox() -> _Sandbox:
     env = _Sandbox(**OPTIONS, finalize=_as_toml)
     env.globals.update(FUNCTIONS)
-    return env.from_string(body)
+    return env
+
+
+@cache  # compiling takes far longer than filling
+def _template(body: str) -> jinja2.Template:
+    return _sandbox().from_string(body)
+
+
+def _numbered(body: str) -> str:
+    """The template with the number of each of its lines as a comment at its end."""
+    found = []
+    for first, kind, text in _sandbox().lex(body):
+        *lines, last = text.split("\n") if kind == "data" else [text]
+        found += [f"{line} {MARK}{first + n}\n" for n, line in enumerate(lines)] + [last]
+    return "".join(found)
+
+
+def _line(text: str, said: str) -> str:
+    """The mark of the line that gives the key with which a message begins ("wall.0.kind = ..."), or of the line where
+    its part begins, in a filled template; a part goes by its number or name. "": there is none."""
+    kind, which, *rest = [*re.split(r"[^\w.]", said)[0].split("."), ""]
+    tables = re.split(r"^(?=\[)", text, flags=re.M)
+    found = [table for table in tables if re.match(rf"\[+scene\.{kind}\]", table)]
+    part = next((table for table in found if re.search(rf'^name = "{which}"', table, re.M)), "")
+    part = part or (found[int(which)] if which.isdigit() and int(which) < len(found) else "")
+    keys = [key for key in (*reversed(rest), kind) if key and not key.isdigit()]
+    lines = [line for key in keys for line in re.findall(rf"^{key}\b.*", part or text, re.M)]
+    return next(iter([*lines, *part.splitlines()]), "").rpartition(MARK)[2]
 
 
 FAILURES = (jinja2.TemplateError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError, MemoryError)
 
 
-def _filled_in(keys: Keys, values: dict[str, Any], place: str) -> str:
-    """The text of the parts. Raises CaseError that names the line of the kind's file."""
+def _filled_in(keys: Keys, values: dict[str, Any], place: str, *, body: str = "") -> str:
+    """The text of the parts by the template of a kind, or another `body` of the same lines.
+
+    Raises CaseError that names the line of the kind's file.
+    """
     try:
-        return _template(keys.body).render(values)
+        return _template(body or keys.body).render(values)
     except CaseError:
         raise
     except (*FAILURES, RecursionError) as error:
@@ -269,7 +300,8 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
     largest = {key: max(p.radii()[1] for p in mixture) for key, mixture in mixtures.items()}
     values = {name: keys[name] for name in keys.heads} | mixtures
     place = f"scene of kind {keys.kind!r}"
-    scene = _tables(_filled_in(keys, values | {"largest": largest, "output": output}, place), place)
+    values |= {"largest": largest, "output": output}
+    scene = _tables(_filled_in(keys, values, place), place)
     places: dict[str, str] = {}
     for fill in scene.get("fill", []):
         key = fill.get("particles")
@@ -284,4 +316,6 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
     try:
         return Parts.model_validate({"kind": "parts", **scene, "measure": [*scene.get("measure", []), *keys.measure]})
     except ValidationError as error:
-        raise CaseError(explain(place, scene, error, "scene")) from None
+        said = explain(place, scene, error, "scene").removeprefix(f"{place}: ")
+        line = _line(_filled_in(keys, values, place, body=_numbered(keys.body)), said)
+        raise CaseError(f"{place}{f', line {keys.above + int(line)}' if line else ''}: {said}") from None

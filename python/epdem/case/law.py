@@ -12,6 +12,7 @@ from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, check_ratios, find_law
 from ..theory.cavity import FINITE_STRAIN
 from .fields import Material, Name
+from .messages import nearest, shorten, shown_key
 from .units import read_number
 
 EXPONENT, INDEX = "hardening_exponent", "meyer_index"
@@ -31,6 +32,22 @@ class LawChoice(BaseModel):
     def numbers(self) -> LawNumbers:
         """The law before its bodies. Raises CaseError."""
         return law_numbers(self.name, self.parameters())
+
+
+class LawMaterial(Material):
+    """A material that can have the strength of the law as a key (yield_pressure = "3 GPa")."""
+
+    model_config = ConfigDict(frozen=True, extra="allow", strict=True)
+
+    def own_strength(self, name: str, law: str) -> float | None:
+        """The strength [Pa] that the material `name` has as the key of this law. Raises CaseError for other keys."""
+        extra, strength = dict(self.model_extra or {}), find_law(law).strength
+        own = extra.pop(strength, None) if strength else None
+        for key, value in extra.items():
+            known = [*type(self).model_fields, *([strength] if strength else []), "from"]
+            shown = f"materials.{name}.{shown_key(key)} = {shorten(repr(value))}"
+            raise CaseError(f"{shown}, unknown key with law {law}; the nearest: {nearest(key, known)}")
+        return None if own is None else read_number(f"materials.{name}.{strength}", own, "Pa")
 
 
 def law_keys(law: Declaration) -> dict[str, str | None]:
@@ -93,11 +110,12 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     return numbers
 
 
-def check_law(law: LawChoice, materials: Mapping[str, Material]) -> None:
+def check_law(law: LawChoice, materials: Mapping[str, LawMaterial]) -> None:
     """Raise CaseError for keys and values that the law does not have, and for a strength that the law gives all bodies
     beside a material's own hardness or yield_ratio."""
     numbers = law.numbers
     for name, m in materials.items():
+        m.own_strength(name, law.name)
         own = "hardness" if m.hardness is not None else "yield_ratio" if m.yield_ratio is not None else ""
         if own and numbers.absolute is not None:
             key = find_law(law.name).strength

@@ -63,6 +63,13 @@ class BedRebound(Frozen):
     kind: Literal["rebound_of_the_bed"]
 
 
+class AtRest(Frozen):
+    """The spheres rest at the end of `phase`, in which they fall; a warning says if they move."""
+
+    kind: Literal["at_rest"]
+    phase: PartName
+
+
 class MassFlow(Frozen):
     """The mass flow through a round outlet at the height `at` of a round bin agrees with Beverloo's formula.
 
@@ -142,5 +149,5 @@ class MeasuredDensities(Frozen):
 
 
 Check = Annotated[
-    FloorLoad | BedRebound | MassFlow | ReboundSpeed | Unloading | TorqueOfBed, Field(discriminator="kind")
+    FloorLoad | BedRebound | AtRest | MassFlow | ReboundSpeed | Unloading | TorqueOfBed, Field(discriminator="kind")
 ]

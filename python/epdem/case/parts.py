@@ -300,6 +300,22 @@ class Parts(Frozen):
             yield from ((f"phase.{p.name}.move", m.wall, "wall of triangles, which can move", moving) for m in p.move)
             if p.until and p.until.wall:
                 yield f"phase.{p.name}.until.wall", p.until.wall, "wall", walls
+        rows, fills = [r.name for r in self.row], [f.name for f in self.random_fills]
+        materials = list(dict.fromkeys(material for _, material in self.named_materials))
+        for check in self.check:
+            for key, what, known in (
+                *((key, "row", rows) for key in ("row", "force", "position")),
+                ("fill", "fill at random places", fills),
+                ("phase", "phase", phases),
+                ("target", "material", materials),
+            ):
+                if name := getattr(check, key, None):
+                    yield f"check.{check.kind}.{key}", name, what, known
+        if s := self.stages:
+            yield from ((f"stages.{key}", getattr(s, key), "row", rows) for key in ("pressure", "opposite"))
+            yield from (("stages.sides", name, "wall", walls) for name in s.sides)
+            yield "stages.wall", s.wall, "wall of triangles, which can move", moving
+            yield "stages.against", s.against, "wall", walls
         for row in self.row:
             has_it = moving if row.position or row.torque else walls
             yield f"row.{row.name}.wall", row.wall, f"wall that has a {row.quantity}", has_it

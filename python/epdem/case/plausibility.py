@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Sentences on values that are possible and most often have a wrong unit."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -35,5 +36,5 @@ def case_warnings(case: "Case | SceneCase") -> list[str]:
     return [
         f"{place} = {x:g}{unit}, usually {least:g} to {largest:g}; {'is the unit right?' if unit else 'percent?'}"
         for place, x, unit, least, largest in _values(case)
-        if x is not None and not least <= x <= largest
+        if x not in (None, math.inf) and not least <= x <= largest
     ]

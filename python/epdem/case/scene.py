@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import ConfigDict, Field, PlainValidator, ValidationError, model_validator
+from pydantic import Field, PlainValidator, ValidationError, model_validator
 
 from ..errors import CaseError
 from .fields import (
@@ -13,7 +13,6 @@ from .fields import (
     Frozen,
     Header,
     Length,
-    Material,
     Name,
     Quantity,
     Restitution,
@@ -22,19 +21,13 @@ from .fields import (
     Viscous,
 )
 from .kinds import Keys, parts, read_scene
-from .law import LawChoice, check_law
+from .law import LawChoice, LawMaterial, check_law
 from .messages import explain
 from .outputs import MeasuredDensities
 from .parts import Parts
 from .sizes import Share, context
 from .toml import KIND, read_toml, with_library
 from .walls import PartName, Time
-
-
-class SceneMaterial(Material):
-    """A material; keys beside the elastic ones are the law's parameters for it (yield_pressure = "3 GPa")."""
-
-    model_config = ConfigDict(frozen=True, extra="allow", strict=True)
 
 
 class Rolling(Frozen):
@@ -124,7 +117,7 @@ class SceneCase(Frozen):
     """One bulk scene."""
 
     case: Header
-    materials: dict[Name, SceneMaterial]
+    materials: dict[Name, LawMaterial]
     law: LawChoice
     scene: Annotated[Keys | Parts, PlainValidator(read_scene)]
     viscous: Viscous | None = None

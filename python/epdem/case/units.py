@@ -74,7 +74,8 @@ def to_si(text: object, si: str) -> float:
         value = float(text)
     else:
         if not isinstance(text, str):
-            raise ValueError(f'expected a quantity with a unit in quotes, as "1 {si}", got {text!r}')
+            shown = text if isinstance(text, int | float) and not isinstance(text, bool) else 1
+            raise ValueError(f'expected a quantity with a unit in quotes, as "{shown} {si}", got {text!r}')
         match = _QUANTITY.fullmatch(text.strip()) if len(text) < 80 else None
         if match is None:
             raise ValueError(f'{text[:60]!r} is not number, blank, unit, as "1 {si}"')

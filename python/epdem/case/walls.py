@@ -9,12 +9,13 @@ from typing import Annotated, Literal, Self
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from .fields import Frozen, Interval, Length, Name, Quantity, Speed, Spin, zero_vector
+from .messages import PART_NAME
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]
 Vector = Annotated[list[Place], Field(min_length=3, max_length=3)]
 Axis = Literal["x", "y", "z"]
-PartName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
+PartName = Annotated[str, Field(pattern=PART_NAME)]
 
 
 def _ordered(span: list[float]) -> list[float]:

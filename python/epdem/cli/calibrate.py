@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..base.terminal import bar
+from ..base.terminal import bar, warned
 from ..errors import CaseError
 from .options import AsJson, CasePath, Force, Out, answer, refuse_options
 
@@ -70,7 +70,7 @@ def calibrate(
     from ..studies.calibrate import summary
 
     found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, hardness, indentation)
-    raise answer(vars(found), summary(found), as_json)
+    raise answer(vars(found), [*summary(found), *warned(found.warnings)], as_json)
 
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> typer.Exit:

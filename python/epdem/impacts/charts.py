@@ -221,7 +221,8 @@ def slip(outcome: Outcome) -> Chart:
             colour += 1
     ends = rows["psi_1"].to_numpy()
     above.append(Series("", [ends.min(), ends.max()], [0.0, 0.0], GREY, "solid", width=0.6))
-    below.append(_tolerance(ends, outcome.case.check.psi_2))
+    if outcome.case.tolerances.psi_2 < np.inf:
+        below.append(_tolerance(ends, outcome.case.tolerances.psi_2))
     before = Axis("psi_1: slip before the impact over mu v_n / kappa")
     return Chart(
         "psi",

@@ -5,6 +5,7 @@ A case file is one way to make an experiment; `sphere`, `plane` and `Experiment`
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -157,9 +158,12 @@ class Experiment:
         return 0.0 if self.viscous_restitution is None else library.viscous_number(self.viscous_restitution)
 
 
-def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
-    """The law of two bodies. Raises CaseError where a yield stress or surface energy is missing."""
-    strong = [numbers.strength(b.material, b) for b in (body, target)]
+def pair_of(numbers: LawNumbers, body: Body, target: Body, own: Mapping[str, float | None] | None = None) -> LawSpec:
+    """The law of two bodies; own: strengths [Pa] by material that materials have themselves.
+
+    Raises CaseError where a yield stress or surface energy is missing.
+    """
+    strong = [numbers.strength(b.material, b, (own or {}).get(b.material)) for b in (body, target)]
     adhesion = numbers.work_of_adhesion({b.material: b.surface_energy for b in (body, target)})
     spec = numbers.pair(strong[0], strong[1], adhesion)
     return replace(spec, common=numbers.absolute is not None)
@@ -207,18 +211,19 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     """A case as physics; another `law` than the case's has its default numbers. Raises CaseError."""
     body, target = bodies(case)
     speed, angle, spin = case.impact.rows()
-    numbers = case.law.numbers
+    numbers, own = case.law.numbers, {n: m.own_strength(n, case.law.name) for n, m in case.materials.items()}
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
         numbers = replace(default_numbers(law), adhesion=numbers.adhesion if find_law(law).adheres else None)
+        own = {}
     x = Experiment(
-        law=pair_of(numbers, body, target),
+        law=pair_of(numbers, body, target, own),
         body=body,
         target=target,
         speed=speed,
         viscous_restitution=case.viscous.restitution if case.viscous else None,
         oblique=Oblique(angle, spin, case.contact.friction, case.contact.tangential) if case.contact else None,
         numerics=case.numerics,
-        check=case.check,
+        check=case.tolerances,
         name=case.name,
         title=case.case.title,
         source=case.case.source,

@@ -5,6 +5,7 @@ Judgement is made anew at each call, from the tables of a run or from stored one
 """
 
 import hashlib
+import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -113,7 +114,7 @@ def _kept(outcome: Outcome, old: store.Results) -> dict[str, pd.DataFrame]:
             x = experiment(case, law)
             prediction = predict(x)
             if about.get("plan") == _plan_hash(plan(x, prediction)):
-                found[key] = compare(engine, law, old.impacts[key], prediction, case.check)
+                found[key] = compare(engine, law, old.impacts[key], prediction, case.tolerances)
     return found
 
 
@@ -143,6 +144,11 @@ def prepare(
         predictions = {x.law.name: predict(x) for x in experiments}
         plans = {x.law.name: plan(x, predictions[x.law.name]) for x in experiments}
         warnings = case_warnings(case)
+        if case.contact and case.tolerances.psi_2 == math.inf:
+            warnings.append(
+                f"contact.tangential = {case.contact.tangential!r}: psi_2 is not checked, because its reference is "
+                "partial slip; take 'partial_slip', or give check.psi_2"
+            )
         for law, p in plans.items():
             warnings += predictions[law].warnings
             for tool in tools:
@@ -182,7 +188,7 @@ def fill(
             if stage.reused:
                 outcome.reused.append(key)
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
-            rows.append(compare(tool.name, law, results.impacts[key], prediction, outcome.case.check))
+            rows.append(compare(tool.name, law, results.impacts[key], prediction, outcome.case.tolerances))
             results.comparison = pd.concat(rows, ignore_index=True)
             keep()
 
@@ -218,11 +224,16 @@ def run(
     require(*tools)
     outcome = prepare(loaded, tools, laws, ranks, folder)
     versions, path = {tool.name: tool.version() for tool in tools}, folder / "results.h5"
-    with claim(folder, force=force):
+    with claim(folder, force=force, case=outcome.case.name) as claimed:
         old = stored_results(path, fresh=fresh)
-        kept = _kept(outcome, old)
+        kept, aside = _kept(outcome, old), list[list[str]]()
 
         def keep() -> None:
+            new = {key: about["inputs"] for key, about in outcome.results.runs.items()}
+            changed = any(k not in kept or new.get(k, x["inputs"]) != x["inputs"] for k, x in old.runs.items())
+            if changed and not (force or aside):
+                aside.append(claimed.set_aside())
+                outcome.warnings += aside[0]
             store.write(path, _merge_earlier(outcome.results, old, kept), old)
 
         fill(outcome, tools, versions, old=None if fresh else old, progress=progress, keep=keep)

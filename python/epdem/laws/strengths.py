@@ -172,7 +172,7 @@ class LawNumbers:
         if yield_stress is None:
             raise CaseError(
                 f"law {self.name} needs the yield_stress, hardness or yield_ratio of materials.{material} "
-                f"(or law.{name}, the same for all); add it"
+                f"(or law.{name}, the same for all); add it, or yield_stress = 'inf Pa' if the material never yields"
             )
         return self.ratio * yield_stress
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from ..base.declarations import declarations
 from ..case.fields import NODES, Tangential
 from ..case.scene import Rolling, SceneCase
-from ..case.units import read_number
 from ..errors import CaseError
-from ..laws.strengths import LawSpec, find_law, own_ratios
+from ..laws.strengths import LawSpec, own_ratios
 from ..theory.pair import E_star
 
 WALL = "wall"
@@ -187,17 +186,10 @@ def strengths(case: SceneCase) -> dict[str, float]:
 
     The key of the material, else the value of the law for all.
     """
-    strength = find_law(case.law.name).strength
-    strengths = {}
-    for name, material in case.materials.items():
-        extra = dict(material.model_extra or {})
-        own = None
-        if strength in extra:
-            own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
-        for key in extra:
-            raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
-        strengths[name] = case.law.numbers.strength(name, material, own)
-    return strengths
+    return {
+        name: case.law.numbers.strength(name, material, material.own_strength(name, case.law.name))
+        for name, material in case.materials.items()
+    }
 
 
 def work_of_adhesion(case: SceneCase, a: str, b: str) -> float | None:

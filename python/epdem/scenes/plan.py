@@ -14,6 +14,7 @@ import pandas as pd
 from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
 from ..case.walls import CasePhase, Limits, LinearMove, Move, PressMove, RotateMove, Vector3
+from ..errors import CaseError
 from ..jobs.engine import Engine, Report
 from ..jobs.stage import Tables
 from . import meshes, servo
@@ -33,7 +34,7 @@ from .limits import (
 )
 from .meshes import FloatArray
 from .model import Model, model
-from .timestep import time_step
+from .timestep import time_step, unstable_steps
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
@@ -418,7 +419,8 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_missing(case)
     beds = tuple(pressed_beds(case, scene, filled))
     refuse_below_solid(beds)
-    dt = time_step(case, largest_density(scene, beds))
+    density = largest_density(scene, beds)
+    dt = time_step(case, density)
     duration = sum(phase.seconds for phase in scene.phase)
     steps = duration / dt
     if any(phase.time_step for phase in scene.phase):
@@ -426,6 +428,8 @@ def plan(case: SceneCase) -> ScenePlan:
     given = case.numerics.time_step
     fixed = [phase.seconds / step for phase in scene.phase if (step := phase.time_step or given)]
     rows = _rows(out)
+    if rows > steps and (unstable := unstable_steps(case, density)):  # too long a step leaves too few for the rows
+        raise CaseError(unstable[0])
     refuse_steps(case, rows, duration, duration / steps)
     every = _row(rows, steps, fixed)
 
@@ -468,6 +472,9 @@ class Resumed:
 
 class SceneEngine(Engine[ScenePlan, Tables], Protocol):
     """An engine of scenes, whose tables are rows, particles, contacts, walls and phases, as far as a plan has them."""
+
+    def read(self, plan: ScenePlan, folder: Path) -> Tables:
+        """The tables of a run that has ended in `folder`. Raises EngineError for what is missing or not whole."""
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         """Continue a run from its newest restart file. Raises CaseError if there is none, EngineError."""

@@ -109,16 +109,22 @@ def run(
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
     begin, total = None, p.steps
-    with claim(folder, force=force, files=given.files) as kept:
+    with claim(folder, force=force, files=given.files, case=p.case.name) as kept:
         start, old = time.perf_counter(), None if fresh or resume else _stored(folder, given.key)
+        same = kept.job.get("inputs") == given.key
+        if not (same or resume or force):
+            notes += kept.set_aside()
+        ended = None if fresh or resume or old or not same else _ended(engine, p, folder)
         if old:
             tables = results.engine_tables(p, old.tables)
         elif resume:
             _refuse_resume(kept, given, versions)
             tables, resumed = engine.resume(p, folder, ranks=ranks, report=lambda step: report(step, total))
             begin, notes = resumed.step, [*notes, *_left_out(folder, resumed)]
+        elif ended:
+            tables = ended
         else:
-            kept.note(versions)
+            kept.note(versions, inputs=given.key)
             engine.put(given.files, folder)
             tables = engine.run(p, folder, ranks=ranks, report=lambda step: report(step, total))
         seconds = 0.0 if old else time.perf_counter() - start
@@ -139,7 +145,15 @@ def run(
         found = results.SceneResults(text, old.attributes if old else about, tables, decks, named)
         results.write(folder / "results.h5", p, found, old)
     warnings = [*notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *passed_walls(p, tables)]
-    return SceneOutcome(p, folder, found, seconds, old is not None, begin, warnings)
+    return SceneOutcome(p, folder, found, seconds, bool(old or ended), begin, warnings)
+
+
+def _ended(engine: SceneEngine, p: ScenePlan, folder: Path) -> Tables | None:
+    """The tables of an engine that has run to its end, and whose results could not be stored: the disk was full."""
+    try:
+        return None if (folder / "results.h5").exists() else engine.read(p, folder)
+    except EngineError:
+        return None
 
 
 def _refuse_resume(kept: ResultsFolder, given: Inputs, versions: dict[str, str]) -> None:

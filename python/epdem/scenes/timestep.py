@@ -81,6 +81,27 @@ def stable_step(case: SceneCase, density: float) -> float:
     return min(stable for *_, stable, _ in _impacts(case, density))
 
 
+def unstable_steps(case: SceneCase, density: float) -> list[str]:
+    """A sentence for each given time step with which not even a single contact is stable."""
+    given = {"numerics.time_step": case.numerics.time_step}
+    given |= {f"scene.phase.{phase.name}.time_step": phase.time_step for phase in case.parts.phase}
+    if not (given := {place: step for place, step in given.items() if step}):
+        return []
+    try:
+        stable = stable_step(case, density)
+    except CaseError:  # no speed follows from the case
+        return []
+    contact = "an impact at the scene's highest speed"
+    if case.law.numbers.compaction and density > times.LOOSE:
+        contact = f"a contact of a bed at a relative density of {density:.2g}, with law.compaction,"
+    return [
+        f"{place} = {step:g} s: {contact} is stable up to {stable:.2g} s, a bed of spheres up to a quarter or a half "
+        "of it; give less, or leave it out"
+        for place, step in given.items()
+        if step > stable
+    ]
+
+
 def time_step(case: SceneCase, density: float) -> float:
     """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed.
 

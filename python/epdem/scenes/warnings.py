@@ -6,18 +6,19 @@ import math
 import numpy as np
 import pandas as pd
 
+from ..case.outputs import AtRest
 from ..case.parts import Region
 from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity
 from ..theory.timestep import LOOSE
 from . import filling, servo, stages
-from .checks import flow_warnings
-from .columns import STRAINS, bodies, reduced
+from .checks import AT_REST, flow_warnings
+from .columns import STRAINS, bodies, last_frame, reduced
 from .limits import dense_beds, depths, largest_density, overlaps
 from .meshes import FloatArray, sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
-from .timestep import stable_step
+from .timestep import unstable_steps
 
 SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
@@ -31,7 +32,14 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
     found = _law(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
-    return found + servo.slower(p) + _time_steps(p) + _durations(p) + _overlaps(p) + _walls(p)
+    return (
+        found
+        + servo.slower(p)
+        + unstable_steps(p.case, largest_density(p.scene, p.beds))
+        + _durations(p)
+        + _overlaps(p)
+        + _walls(p)
+    )
 
 
 def _law(p: ScenePlan) -> list[str]:
@@ -80,12 +88,30 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
     pressing = stages.warnings(p, tables) if "stages" in tables else []
     softens = "finite_strain" in p.model.ratios()
     effect = PRESSED if p.model.compaction else validity.SOFTENED if softens else validity.OVERESTIMATED
-    others = [*servo.not_reached(p, tables["rows"]), *flow_warnings(p, tables)]
+    others = [*servo.not_reached(p, tables["rows"]), *flow_warnings(p, tables), *_still_moves(p, tables)]
     return [*validity.finite_strain(largest, where, effect), *no_void, *pressing, *others] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
         for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
     ]
+
+
+def _still_moves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
+    """A sentence for each phase in which spheres come to rest and at whose end they move."""
+    settles = {check.phase for check in p.scene.check if isinstance(check, AtRest)}
+    if not settles or "particles" not in tables:
+        return []
+    rows, found = tables["rows"], []
+    mass, radius = last_frame(tables["particles"])[["mass", "radius"]].mean()
+    for phase in (x for x in p.phases if x.name in settles):
+        end = rows[rows["step"] <= phase.end].iloc[-1]
+        energy = end["kinetic_energy"] / max(1.0, end["particles"])
+        if energy > AT_REST * mass * p.scene.gravity * radius:
+            speed = math.sqrt(2.0 * energy / mass)
+            found.append(
+                f"phase {phase.name} ends while the spheres still move, at {speed:.3g} m/s (rms); give more time"
+            )
+    return found
 
 
 def _share_above(p: ScenePlan, tables: dict[str, pd.DataFrame], limit: float) -> float:
@@ -99,28 +125,6 @@ def _share_above(p: ScenePlan, tables: dict[str, pd.DataFrame], limit: float) ->
     elastic = np.sqrt(R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
     strain = weaker * np.maximum(contacts["dent_radius"], elastic) / R_star
     return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
-
-
-def _time_steps(p: ScenePlan) -> list[str]:
-    """Given time steps with which not even a single contact is stable."""
-    given = {"numerics.time_step": p.case.numerics.time_step}
-    given |= {f"scene.phase.{phase.name}.time_step": phase.time_step for phase in p.scene.phase}
-    if not (given := {place: step for place, step in given.items() if step}):
-        return []
-    density = largest_density(p.scene, p.beds)
-    try:
-        stable = stable_step(p.case, density)
-    except CaseError:  # no speed follows from the case
-        return []
-    contact = "an impact at the scene's highest speed"
-    if p.model.compaction and density > LOOSE:
-        contact = f"a contact of a bed at a relative density of {density:.2g}, with law.compaction,"
-    return [
-        f"{place} = {step:g} s: {contact} is stable up to {stable:.2g} s, a bed of spheres up to a quarter or a half "
-        "of it; give less, or leave it out"
-        for place, step in given.items()
-        if step > stable
-    ]
 
 
 def _durations(p: ScenePlan) -> list[str]:

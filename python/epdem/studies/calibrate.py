@@ -55,6 +55,7 @@ def specimen(body: Body, target: Body) -> Body:
 EXPONENT = "hardening_exponent"
 LARGEST_EXPONENT = 0.999
 CONFIDENCE = 0.95  # of intervals
+FAR = 2.0  # between the strength that e_n gives and that of the material
 UNKNOWN = 0.5  # standard error of the exponent, whose range is [0, 1), above which measurements do not determine it
 
 
@@ -78,6 +79,7 @@ class Calibration:
     measured: tuple[tuple[float, float], ...] = ()  # speeds [m/s] and e_n
     largest_residual: float | None = None  # of e_n, in units of its uncertainty, or else of the scatter
     scatter: float | None = None  # of e_n about the fit, where no uncertainty was given
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,21 @@ class _Uncalibrated:
     def hardening(self, exponent: float) -> "_Uncalibrated":
         """The same with this hardening exponent."""
         return replace(self, law=replace(self.law, ratios=self.law.ratios | {EXPONENT: exponent}))
+
+    def far_from_material(self, strength: float) -> tuple[str, ...]:
+        """A sentence where this strength [Pa] is far from that which the material itself has."""
+        body = specimen(*bodies(self.case))
+        try:
+            known = self.law.strength(body.material, body)
+        except CaseError:  # the material has none
+            return ()
+        if 1.0 / FAR <= strength / known <= FAR:
+            return ()
+        return (
+            f"{self.parameter} is {strength / known:.3g} times the {known / 1e6:.4g} MPa of materials.{body.material}, "
+            f"so that E/Y is {known / strength:.3g} times the material's: a part of the loss may be viscous, as in "
+            "polymers (see [viscous]), or to waves; compare e_n at other speeds",
+        )
 
     def result(self, strength: float, speed: float | None, source: str) -> Calibration:
         """The calibration with this strength [Pa]."""
@@ -145,7 +162,8 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
     if not restitution(low) < e_n < restitution(high):
         raise CaseError(f"e_n = {e_n:g} at {speed:g} m/s: no strength between {LEAST_STRENGTH:g} and 1 of E* gives it")
     strength = math.exp(bisect(lambda middle: restitution(middle) < e_n, low, high)[0])
-    return uncalibrated.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
+    found = uncalibrated.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
+    return replace(found, warnings=uncalibrated.far_from_material(strength))
 
 
 def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..base.files import results_folder
 from ..base.paths import DEFAULT_ENGINE
+from ..case.keys import keys_of
 from ..case.scene import is_scene
 from ..case.toml import LoadedCase, portable_text
 from ..case.units import to_si
@@ -25,7 +26,7 @@ from ..errors import CaseError, EngineError
 from .sweep import folder as store
 from .sweep import run as study
 from .sweep.folder import Sweep
-from .sweep.points import Point, ValueRange, axes, keys_of
+from .sweep.points import Point, ValueRange, axes
 from .sweep.table import unit
 
 Targets = Mapping[str, str | float]

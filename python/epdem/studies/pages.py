@@ -106,7 +106,7 @@ def impacts_page(outcome: Outcome, command: str = "") -> Page:
     parts: list[Part] = [*impacts_figures(outcome), impacts_table(outcome)]
     for law, p in outcome.plans.items():
         parts.append(Facts("Bodies and law" + f" {law}" * several, _impact_facts(p.experiment)))
-    allowed = {name: f"{value:g}" for name, value in outcome.case.check.model_dump().items()}
+    allowed = {name: f"{value:g}" for name, value in outcome.case.tolerances.model_dump().items()}
     parts += [Facts("Tolerances of the case", allowed), case_lines(results.case_text), *impacts_decks(outcome)]
     return page_of(
         outcome,

@@ -9,7 +9,8 @@ overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of 
 
 The force of a contact at a speed, its yield force and its pull-off force fall as k^0.4. Forces that a scene prescribes
 fall with them, weight does not. At the same density the pressure of a bed at rest is that of its strength: pressures of
-a press, and forces without weight, fall as k^0.8.
+a press, and forces without weight, fall as k^0.8. Kinetic energies of impacts at the same speeds are the same, and
+falls, ways and turns take the same times: lengths, times, speeds and energies of a scene stay.
 
 The overlap of first yield goes as (p_y/E*)^2: yield_ratio k^0.4. The constraint of a hardness depends on E/Y, so that a
 hardness becomes the yield_ratio of the same strength.
@@ -20,6 +21,7 @@ overlap/R*, which no parameter scales: there e_n changes.
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +33,7 @@ from ..case.fields import Material
 from ..case.impact import Rate
 from ..case.law import law_numbers
 from ..case.toml import portable_text, read_toml, text_of, with_library
+from ..case.units import to_si
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, find_law, yield_ratio_of
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
@@ -41,6 +44,7 @@ if TYPE_CHECKING:
 
 STRENGTH_POWER, ADHESION_POWER, FORCE_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.4, 0.2
 OVERLAP_POWER = 0.4  # of overlaps over the radius
+KEPT = ("s", "Hz", "m/s", "rad/s", "J")  # units of what a scene keeps and a twin names
 Key = tuple[str | int, ...]  # names of tables and numbers of entries
 
 
@@ -72,18 +76,15 @@ def _scaled(value: str, factor: float) -> str:
     return f"{float(number) * factor:.15g} {unit.strip()}"
 
 
-def _phases(data: dict[str, Any]) -> list[dict[str, Any]]:
-    phases: list[dict[str, Any]] = data.get("scene", {}).get("phase", [])
-    return phases
-
-
-def _forces(data: dict[str, Any]) -> Iterator[tuple[Key, str]]:
-    """(key, value) of each force that a scene of parts prescribes: of presses and of conditions."""
-    for n, phase in enumerate(_phases(data)):
-        moves = [((n, "move", m), move) for m, move in enumerate(phase.get("move", []))]
-        for place, table in [*moves, ((n, "until"), phase.get("until", {}))]:
-            for key in {"force", "force_below"} & set(table):
-                yield ("scene", "phase", *place, key), table[key]
+def _quantities(data: Any, unit: str, place: Key = ()) -> Iterator[tuple[Key, str]]:
+    """(key, value) of each quantity in tables of a case that has this unit of SI, or a multiple."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+        if isinstance(value, dict | list):
+            yield from _quantities(value, unit, (*place, key))
+        elif isinstance(value, str):
+            with suppress(ValueError):
+                to_si(value, unit)
+                yield (*place, key), value
 
 
 def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]:
@@ -117,11 +118,9 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
         texts["rate", "reference"] = _scaled(reference, factor**-STRAIN_POWER)
     resting = data.get("scene", {}).get("gravity", "9.81").split()[0]
     power = FORCE_POWER if float(resting) else STRENGTH_POWER  # no impact drives a bed without weight
-    texts |= {key: _scaled(force, factor**-power) for key, force in _forces(data)}
-    for keys in (("scene", "stages"), ("measured", "pressures")):
-        pressures = data.get(keys[0], {}).get(keys[1])
-        if isinstance(pressures, list):
-            texts |= {(*keys, n): _scaled(x, factor**-STRENGTH_POWER) for n, x in enumerate(pressures)}
+    prescribed = {name: data[name] for name in ("scene", "measured") if name in data}
+    for unit, fall in (("N", power), ("Pa", STRENGTH_POWER)):
+        texts |= {key: _scaled(value, factor**-fall) for key, value in _quantities(prescribed, unit)}
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
     return texts | {("case", "name"): name}
 
@@ -162,7 +161,14 @@ def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
         found.append(
             "a wall that moves with a given velocity compresses the same way: where spheres yield, its forces and "
             f"stresses fall with the strength, by a factor of {factor**STRENGTH_POWER:.3g} (k^{STRENGTH_POWER:g}); "
-            f"springback grows by a factor of {factor**STRAIN_POWER:.3g} (k^{STRAIN_POWER:g})"
+            f"springback grows by a factor of {factor**STRAIN_POWER:.3g} (k^{STRAIN_POWER:g}), the inertial number of "
+            f"the press by {factor**STEP_POWER:.3g} (k^{STEP_POWER:g}): press slower by as much where a run warns of it"
+        )
+    places = (key for unit in KEPT for key, _ in _quantities(data["scene"], unit, ("scene",)))
+    if kept := dict.fromkeys(".".join(map(str, k if isinstance(k[-1], str) else k[:-1])) for k in places):
+        found.append(
+            f"times, speeds and kinetic energies are kept ({', '.join(kept)}): contacts last "
+            f"{factor**STEP_POWER:.3g} times longer; phases must be long beside them"
         )
     if scene.gravity:
         found.append(

@@ -22,11 +22,12 @@ import tomlkit
 
 from ...base import paths
 from ...base.files import MARKER, results_folder, write_text
+from ...case.keys import keys_of
 from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import file_names
 from ...errors import CaseError
-from .points import Point, assign, keys_of
+from .points import Point, assign
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"

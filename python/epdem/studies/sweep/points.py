@@ -1,117 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Points of a sweep: keys by dotted names; ranges, lists and tables of values; grids and Latin hypercubes."""
 
-import difflib
 import itertools
 import math
 import re
 import tomllib
-import types
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Any
 
 import numpy as np
 import tomlkit
-from pydantic import BaseModel
 
-from ...base.declarations import Declaration, declarations
-from ...case.fields import Material, Quantity
-from ...case.impact import Case
-from ...case.kinds import Keys, model_of
-from ...case.law import LawChoice, alternatives, law_keys
-from ...case.scene import SceneCase, SceneMaterial, is_scene
+from ...case.keys import Key, entry, law_of
+from ...case.law import alternatives
+from ...case.messages import nearest
 from ...case.sizes import csv_table
 from ...case.toml import strength_keys
 from ...case.units import to_si
 from ...errors import CaseError
-from ...laws.strengths import ADHESION
-
-
-@dataclass(frozen=True)
-class Key:
-    """Kind of a key's value: quantity of `unit` or a list of quantities, whole number, or any other value."""
-
-    unit: str | None = None
-    whole: bool = False
-
-
-def keys_of(data: dict[str, Any]) -> dict[str, Key]:
-    """Every key that the case or scene `data` (TOML tables) has or can have, by its dotted name."""
-    keys: dict[str, Key] = {}
-    for place, key in _walk(SceneCase if is_scene(data) else Case, (), data, data):
-        name = ".".join(place)
-        if name not in keys or keys[name] == Key():
-            keys[name] = key
-    return keys
-
-
-def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) -> Iterator[tuple[tuple[str, ...], Key]]:
-    origin, arguments = get_origin(kind), get_args(kind)
-    if origin is Annotated:
-        for quantity in arguments[1:]:
-            if isinstance(quantity, Quantity):
-                yield place, Key(unit=quantity.si)
-                return
-        yield from _walk(arguments[0], place, data, case)
-    elif origin in (Union, types.UnionType):
-        for one in arguments:
-            yield from _walk(one, place, data, case)
-    elif origin is dict:
-        for name in data if isinstance(data, dict) else ():
-            yield from _walk(arguments[1], (*place, name), data[name], case)
-    elif origin is list:
-        quantities = [m for m in get_args(arguments[0])[1:] if isinstance(m, Quantity)]
-        yield place, Key(unit=quantities[0].si if quantities else None)
-        for n, entry in enumerate(data if isinstance(data, list) else ()):
-            yield from _walk(arguments[0], (*place, str(n)), entry, case)
-    elif kind is Keys:
-        if model := model_of((data or {}).get("kind")):
-            yield from _fields(model, place, data, case)
-    elif isinstance(kind, type) and issubclass(kind, BaseModel):
-        yield from _fields(kind, place, data if isinstance(data, dict) else {}, case)
-    elif kind is not type(None):
-        yield place, Key(whole=kind is int)
-
-
-def _fields(
-    model: type[BaseModel], place: tuple[str, ...], data: dict[str, Any], case: dict[str, Any]
-) -> Iterator[tuple[tuple[str, ...], Key]]:
-    kind = model.model_fields.get("kind")
-    if kind and get_origin(kind.annotation) is Literal and data.get("kind") not in get_args(kind.annotation):
-        return  # another kind of scene
-    for name, field in model.model_fields.items():
-        quantity = next((m for m in field.metadata if isinstance(m, Quantity)), None)
-        key = field.alias or name
-        if quantity:
-            yield (*place, key), Key(unit=quantity.si)
-        else:
-            yield from _walk(field.annotation, (*place, key), data.get(key), case)
-    if issubclass(model, Material):
-        yield (*place, "from"), Key()
-    if issubclass(model, LawChoice | SceneMaterial):
-        law = _law(case)
-        keys = law_keys(law) if law else {}
-        if law and not issubclass(model, LawChoice):  # of a material: its own numbers; adhesion belongs to pairs
-            keys = {p.name: p.unit for p in law.parameters if p.name != ADHESION}
-        for parameter, unit in keys.items():
-            yield (*place, parameter), Key(unit=unit)
-
-
-def _law(data: dict[str, Any]) -> Declaration | None:
-    table = data.get("law")
-    return declarations().get(str(table.get("name"))) if isinstance(table, dict) else None
 
 
 def require_key(key: str, keys: dict[str, Key], place: str) -> Key:
     """The key of that name. Raises CaseError with the nearest names."""
     if key in keys:
         return keys[key]
-    last = [name for name in keys if name.split(".")[-1] == key.split(".")[-1]]
-    near = [*difflib.get_close_matches(key, keys, n=1, cutoff=0.0), *last]
-    nearest = ", ".join(list(dict.fromkeys(near))[:4])
-    raise CaseError(f"{place}: the case has no key {key!r}; the nearest: {nearest}")
+    raise CaseError(f"{place}: the case has no key {key!r}; the nearest: {nearest(key, keys)}")
 
 
 def _exclusive_keys(key: str, data: dict[str, Any]) -> tuple[str, ...]:
@@ -120,7 +35,7 @@ def _exclusive_keys(key: str, data: dict[str, Any]) -> tuple[str, ...]:
         return ("numerics.steps_in_contact",)
     if key == "numerics.steps_in_contact":
         return ("numerics.error",)
-    law, (table, _, name) = _law(data), key.partition(".")
+    law, (table, _, name) = law_of(data), key.partition(".")
     material, _, last = name.rpartition(".")
     if table == "materials" and last in strength_keys():
         return tuple(f"materials.{material}.{other}" for other in strength_keys())
@@ -140,12 +55,12 @@ def assign(document: Any, key: str, value: Any) -> None:
     table = document
     for name in way:
         if isinstance(table, list):
-            table = table[int(name)]
+            table = table[entry(table, name)]
             continue
         if name not in table:
             table[name] = tomlkit.table() if isinstance(document, tomlkit.TOMLDocument) else {}
         table = table[name]
-    table[int(last) if isinstance(table, list) else last] = value
+    table[entry(table, last) if isinstance(table, list) else last] = value
 
 
 Value = Any  # as it stands in a case file: text, number, true or false, list, table

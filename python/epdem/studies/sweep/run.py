@@ -19,6 +19,7 @@ import pandas as pd
 from ...base.declarations import declarations
 from ...base.files import claim
 from ...case import impact, scene
+from ...case.keys import keys_of
 from ...case.scene import is_scene
 from ...case.toml import LoadedCase, error_context, portable_text, with_whole_paths
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
@@ -32,7 +33,7 @@ from ...scenes.run import run as run_scene
 from . import folder as store
 from . import local, points, table
 from .folder import Sweep
-from .points import Point, Value, keys_of
+from .points import Point, Value
 from .table import numbers_of
 
 SEPARATOR = " | "  # of the warnings of a row
