@@ -247,7 +247,8 @@ def _numbered(body: str) -> str:
 def _line(text: str, said: str) -> str:
     """The mark of the line that gives the key with which a message begins ("wall.0.kind = ..."), or of the line where
     its part begins, in a filled template; a part goes by its number or name. "": there is none."""
-    kind, which, *rest = [*re.split(r"[^\w.]", said)[0].split("."), ""]
+    key = str(re.split(r"[^\w.]", said)[0])
+    kind, which, *rest = f"{key}.".split(".")
     tables = re.split(r"^(?=\[)", text, flags=re.M)
     found = [table for table in tables if re.match(rf"\[+scene\.{kind}\]", table)]
     part = next((table for table in found if re.search(rf'^name = "{which}"', table, re.M)), "")
