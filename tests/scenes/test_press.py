@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from rich.table import Table
 from scene_runs import run, write_case
 from stored_runs import CASES
 
@@ -22,7 +23,7 @@ from epdem.scenes import checks, report, stages
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
-from epdem.studies.pages import scene_page, scene_sentences
+from epdem.studies.pages import scene_page, scene_sentences, write_scene_page
 from epdem.studies.soften import soften
 from epdem.studies.sweep.table import numbers_of, unit
 
@@ -106,6 +107,11 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     assert len(spheres[spheres["step"] == found["step"].iloc[-1]]) == COUNT
 
 
+def figures(outcome):
+    """The panel of each figure of a press, by its heading."""
+    return {chart.heading: chart.panels[0] for chart in report.key(outcome.plan, outcome.results.tables)}
+
+
 @pytest.mark.liggghts
 def test_a_softened_press_reaches_the_densities_of_the_press(pressed):
     """Strain and inertia grow: within 0.02."""
@@ -122,20 +128,112 @@ def test_a_softened_press_reaches_the_densities_of_the_press(pressed):
 
 
 @pytest.mark.liggghts
-def test_the_page_has_density_over_pressure_and_heckels_line_through_the_stages(pressed):
-    (chart,) = report.key(pressed.plan, pressed.results.tables)
-    density, heckel, springback = chart.panels
-    ends = pressed.results.tables["stages"]
-    assert np.asarray(density.series[1].y) == pytest.approx(ends["relative_density"].to_numpy())
-    assert len(heckel.series) == 1, "two stages are no line"
-    rows = pressed.results.rows.set_index("step")
-    for curve, name in zip(springback.series, ("release1", "release2"), strict=True):
-        at = int(ends.index[ends["phase"] == name][0])
+def test_the_figures_have_the_numbers_of_rows_stages_and_sides(pressed):
+    found, tables = figures(pressed), pressed.results.tables
+    assert [*found] == [
+        "Force over displacement",
+        "Density over pressure",
+        "Springback",
+        "Pressure on the sides by height",
+    ]
+    ends, rows = tables["stages"].set_index("phase"), pressed.results.rows.set_index("step")
+    punch, *marks = found["Force over displacement"].series
+    at = rows.iloc[-len(punch.y) :]
+    assert np.asarray(punch.y) == pytest.approx(at["pressure"].to_numpy() * SIDE**2)
+    assert np.asarray(punch.x) == pytest.approx(HEIGHT - at["punch_z"].to_numpy(), rel=1e-9)
+    assert rows["pressure"].iloc[: -len(punch.y)].max() < 0.01 * PRESSURES[0], "curves begin where the punch bears"
+    for mark, name in zip(marks, ("stage1", "stage2"), strict=True):
+        assert mark.name.startswith(f"{name}, ") and mark.y[0] == pytest.approx(ends["reached"][name] * SIDE**2)
+        assert mark.x[0] == pytest.approx(HEIGHT - ends["height"][name])
+    density, borne = found["Density over pressure"], ends[ends["pressure"] > 1e-3 * ends["pressure"].max()]
+    assert density.x.log and np.asarray(density.series[1].y) == pytest.approx(borne["relative_density"].to_numpy())
+    for curve, name in zip(found["Springback"].series, ("release1", "release2"), strict=True):
+        before = ends.index[ends.index.get_loc(name) - 1]
         way = np.arange(1, len(curve.y) + 1) - 0.5  # the middles of rows, from the height of the end of loading
-        strain = 0.5 * way * pressed.plan.every * pressed.plan.time_step / ends["height"][at - 1]
-        assert curve.name == name and np.asarray(curve.y)[:-1] == pytest.approx(strain[:-1], rel=1e-6)
+        strain = 100 * 0.5 * way * pressed.plan.every * pressed.plan.time_step / ends["height"][before]
+        assert curve.name == f"{name}, {100 * ends['springback'][name]:.3g} %"
+        assert np.asarray(curve.y)[:-1] == pytest.approx(strain[:-1], rel=1e-6)
         assert strain[-2] < curve.y[-1] <= strain[-1], "the punch rests within the last row"
-        assert np.asarray(curve.x) == pytest.approx(rows["pressure"].loc[: ends["step"][at]].to_numpy()[-len(way) :])
+        assert np.asarray(curve.x) == pytest.approx(rows["pressure"].loc[: ends["step"][name]].to_numpy()[-len(way) :])
+    for curve, name in zip(found["Pressure on the sides by height"].series, ("stage1", "stage2"), strict=True):
+        slices = np.diff(curve.y)[::2]
+        assert len(slices) > 2 and sum(slices) == pytest.approx(ends["height"][name])
+        mean = np.average(np.asarray(curve.x)[::2], weights=slices)
+        assert mean == pytest.approx(ends["radial_pressure"][name])
+
+
+SI = {"MPa": 1e6, "kPa": 1e3, "mm": 1e-3, "um": 1e-6, "%": 0.01}
+
+
+def in_si(heads, rows):
+    """Columns of texts in SI by the names of their heads, as NAME [UNIT]."""
+    found = {}
+    for head, column in zip(heads, zip(*rows, strict=True), strict=True):
+        name, _, unit = head.removesuffix("]").partition(" [")
+        texts = [math.nan if x == "-" else float(x) if re.fullmatch(r"[-+.e\d]+", x) else x for x in column]
+        found[name] = [x * SI.get(unit, 1.0) if isinstance(x, float) else x for x in texts]
+    return found
+
+
+@pytest.mark.liggghts
+def test_page_terminal_figures_and_csv_have_the_same_numbers(pressed):
+    """Read back from what a reader sees, with the units that stand there; all in SI are those of results.h5."""
+    page = write_scene_page(pressed, ["svg"]).read_text()
+    assert page.index(">Stages</h2>") < page.index(">Force over displacement</h2>") < page.index(">The bed</h2>")
+    ends, folder = pressed.results.tables["stages"], pressed.folder
+    seen = {}
+    for table in re.findall(r"<table class=.sorts.>.*?</table>", page, re.S)[:2]:
+        heads = re.findall(r"<button[^>]*>([^<]*)<", table)
+        rows = [re.findall(r"<td[^>]*>([^<]*)<", row) for row in table.split("<tr>")[2:]]
+        seen |= in_si(heads, rows)
+    assert {*seen} == {*ends} - {"step", "time", "porosity"}
+    (shown,) = [x for x in report.shown(pressed) if isinstance(x, Table) and str(x.title) == "stages"]
+    printed = in_si(
+        [str(c.header) for c in shown.columns], zip(*(map(str, c.cells) for c in shown.columns), strict=True)
+    )
+    pd.testing.assert_frame_equal(pd.DataFrame(printed), pd.DataFrame(seen)[[*printed]])
+    before_decks = page.partition(">Case file</h2>")[0]
+    assert "[Pa]" not in before_decks and "asked [MPa]" in page and "height [mm]" in page
+    for name, values in seen.items():
+        if name == "phase":
+            assert values == ends["phase"].to_list()
+        else:
+            digits = 5e-2 if name == "error" else 1e-4
+            assert values == pytest.approx(ends[name].to_list(), rel=digits, nan_ok=True)
+    drawn = pd.read_csv(folder / "key.csv")
+    assert set(drawn["panel"]) == {"force on the punch [N] against displacement [mm]"}
+    marks = drawn[drawn["series"].str.startswith("stage")]
+    asked = ends[ends["asked"].notna()]
+    assert (HEIGHT - 1e-3 * marks["x"]).to_numpy() == pytest.approx(asked["height"].to_numpy(), rel=1e-6)
+    assert (marks["y"] / SIDE**2).to_numpy() == pytest.approx(asked["reached"].to_numpy(), rel=1e-6)
+    rows = pd.read_csv(folder / "results.csv")
+    density = pd.read_csv(folder / "densification.csv")
+    punch = density[density["series"] == "punch"]
+    known = rows[rows["pressure"] >= 0.999e6 * punch["x"].min()]
+    assert 1e6 * punch["x"].to_numpy() == pytest.approx(known["pressure"].to_numpy(), rel=1e-6)
+    assert punch["y"].to_numpy() == pytest.approx(known["relative_density"].to_numpy(), rel=1e-6)
+    said = re.search(r"Relative density: ([.\d]+) at ([.\d]+) MPa, .*? Springback: ([.\d]+), ([.\d]+) %", page)
+    back = ends["springback"].dropna().to_list()
+    assert [float(x) for x in said.groups()] == pytest.approx(
+        [asked["relative_density"].iloc[0], 1e-6 * asked["reached"].iloc[0], 100 * back[0], 100 * back[1]], rel=5e-3
+    )
+
+
+@pytest.mark.liggghts
+def test_lines_go_through_three_stages_or_are_not_drawn(pressed):
+    """Stages on given lines: 1/slope of Heckel and a, 1/b of Kawakita are those of the lines."""
+    p, tables = pressed.plan, dict(pressed.results.tables)
+    assert not {"Heckel's line", "Kawakita's line"} & {*figures(pressed)}
+    x = np.array([10e6, 20e6, 40e6])
+    stage = tables["stages"].iloc[:1]
+    for name, solid in (
+        ("Heckel, 3 points, 1/slope = 50 MPa", 1.0 - np.exp(-0.5 - x / 50e6)),
+        ("Kawakita, 3 points, a = 0.8, 1/b = 5 MPa", 0.2 / (1.0 - 0.8 * x / (x + 5e6))),
+    ):
+        made = pd.concat([stage] * 3).assign(pressure=x, relative_density=solid, porosity=1.0 - solid)
+        rows = tables["rows"].assign(relative_density=0.2)
+        found = report.key(p, tables | {"stages": made.reset_index(drop=True), "rows": rows})
+        assert name in [series.name for chart in found for series in chart.panels[0].series]
 
 
 @pytest.mark.liggghts
@@ -148,8 +246,8 @@ def test_rows_have_height_and_density_and_the_page_the_table_of_stages(pressed):
     assert last["relative_density"] == pytest.approx(volume / (SIDE**2 * height), rel=1e-9)
     dense = pressed.results.tables["stages"].set_index("phase")["relative_density"]["stage2"]
     assert numbers_of(pressed.results)["relative_density_max"] == pytest.approx(dense, rel=3e-3)  # a target of a fit
-    (part,) = [part for part in scene_page(pressed).parts if getattr(part, "title", "") == "Stages"]
-    assert part.frame is pressed.results.tables["stages"] and "the force of an ejection is no result" in part.note
+    (part,) = [part for part in scene_page(pressed).parts if getattr(part, "title", "").startswith("Plates")]
+    assert "the force of an ejection is no result" in part.note
 
 
 @pytest.mark.liggghts
@@ -165,8 +263,7 @@ def test_measured_densities_stand_beside_those_of_the_first_load(pressed):
     said = [float(x) for x in re.findall(r"([+-]\d\.\d+) at", line)]
     assert said == pytest.approx(differences, abs=0.01)
     assert line.endswith("not reached at 1e+09 Pa (by hand)")
-    (chart,) = report.key(p, tables)
-    points = chart.panels[0].series[-1]
+    points = figures(pressed)["Density over pressure"].series[-1]
     assert points.name == "measured" and [*points.y] == [0.6, 0.75, 0.99]
     assert line[1:] in " ".join(scene_sentences(pressed))
 

@@ -42,8 +42,13 @@ def cell(value: object, digits: int = 5) -> str:
     if type(value).__name__.startswith("bool"):  # numpy's, too
         return "yes" if value else "no"
     if isinstance(value, float):
-        return "-" if value != value else f"{value:.{digits}g}"
+        return "-" if value != value else f"{value + 0.0:.{digits}g}"  # no -0
     return str(value)
+
+
+def digits_of(names: Iterable[object], digits: int = 5) -> list[int]:
+    """The digits of columns: errors have two."""
+    return [2 if str(name).endswith("error") else digits for name in names]
 
 
 def heads(names: Iterable[object], units: Mapping[str, str]) -> dict[str, str]:
@@ -62,7 +67,7 @@ def frame_table(
     not `passed`."""
     columns = columns or heads(frame, {})
     left = [head for name, head in columns.items() if frame[name].dtype.kind not in "biufc"]
-    shown, many = table(title, columns.values(), left=left), [2 if n.endswith("error") else digits for n in columns]
+    shown, many = table(title, columns.values(), left=left), digits_of(columns, digits)
     passed = frame["passed"] if "passed" in frame else repeat(True)
     for *row, good in zip(*(frame[name] for name in columns), passed, strict=False):
         shown.add_row(*map(cell, row, many), style=None if good else "red")

@@ -263,7 +263,7 @@ class Parts(Frozen):
     row: list[Row] = Field(default_factory=list, max_length=64)
     check: list[Check] = Field(default_factory=list, max_length=64)
     stages: Stages | None = None
-    key_figure: list[Name] = Field(default_factory=list, max_length=4)
+    key_figure: list[Name] = Field(default_factory=list, max_length=8)
     highest_fall: Annotated[float, Quantity("m", ge=0.0)] | None = None
     highest_drive: Annotated[float, Quantity("m/s", ge=0.0)] | None = None
     places: dict[str, str] = Field(default_factory=dict)

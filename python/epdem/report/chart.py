@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from ..base.files import atomic, write_texts
+from ..base.readable import unit_for
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,6 +104,30 @@ class Chart:
                 for x, y in zip(np.atleast_1d(series.x), np.atleast_1d(series.y), strict=True):
                     table.writerow((place, plain(series.name), f"{x:.9g}", f"{y:.9g}"))
         return text.getvalue()
+
+    def readable(self) -> "Chart":
+        """The chart in units that readers know; all axes of one SI unit have the same one."""
+        pairs = [
+            (axis.unit, numbers)
+            for panel in self.panels
+            for axis, values in ((panel.x, [s.x for s in panel.series]), (panel.y, [s.y for s in panel.series]))
+            for numbers in values
+        ]
+        units = dict.fromkeys(unit for unit, _ in pairs)
+        read = {u: unit_for(u, np.concatenate([np.ravel(x) for unit, x in pairs if unit == u])) for u in units}
+
+        def scaled(axis: Axis) -> tuple[Axis, float]:
+            name, factor = read.get(axis.unit, (axis.unit, 1.0))
+            low, high = (None if x is None else x / factor for x in (axis.low, axis.high))
+            ticks = axis.ticks and {x / factor: text for x, text in axis.ticks.items()}
+            return replace(axis, unit=name, low=low, high=high, ticks=ticks), factor
+
+        panels = []
+        for panel in self.panels:
+            (x, by_x), (y, by_y) = scaled(panel.x), scaled(panel.y)
+            series = [replace(s, x=np.asarray(s.x) / by_x, y=np.asarray(s.y) / by_y) for s in panel.series]
+            panels.append(replace(panel, x=x, y=y, series=series))
+        return replace(self, panels=panels)
 
 
 def plain(text: str) -> str:

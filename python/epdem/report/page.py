@@ -8,11 +8,13 @@ import base64
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from ..base import readable
 from ..base.files import write_text
-from ..base.terminal import cell, heads
+from ..base.terminal import cell, digits_of, heads
 from .chart import Chart, Drawing
 
 if TYPE_CHECKING:  # slow to import
@@ -33,7 +35,8 @@ class Facts:
 
 @dataclass(frozen=True)
 class Rows:
-    """A table that sorts by a click or the enter key on a heading. `units` by column, in the headings."""
+    """A table that sorts by a click or the enter key on a heading. `units`, SI, by column; headings and numbers are in
+    those that readers know."""
 
     title: str
     frame: "pd.DataFrame"
@@ -41,13 +44,19 @@ class Rows:
     note: str = ""
     kind: ClassVar[str] = "rows"
 
+    @cached_property
+    def shown(self) -> "tuple[pd.DataFrame, dict[str, str]]":
+        """The first `row_limit` rows and the units of their columns, as readers know them."""
+        return readable.columns(self.frame.head(self.row_limit), self.units)
+
     def heads(self) -> list[str]:
         """The headings: names with their units."""
-        return [*heads(self.frame, self.units).values()]
+        return [*heads(*self.shown).values()]
 
     def cells(self) -> list[list[str]]:
-        """The texts of the first `row_limit` rows."""
-        return [[*map(cell, row)] for row in self.frame.head(self.row_limit).itertuples(index=False)]
+        """The texts of the rows."""
+        frame, _ = self.shown
+        return [[*map(cell, row, digits_of(frame))] for row in frame.itertuples(index=False)]
 
     @property
     def row_limit(self) -> int:
@@ -110,7 +119,10 @@ def render(page: Page, drawn: Callable[[Drawing], str] = Drawing.svg) -> str:
     """The page as HTML. drawn: the element `svg` of a drawing."""
     from ..base import rendering  # slow to import
 
-    return rendering.render("report/page.html.j2", page=page, drawing=Drawing, drawn=drawn)
+    def drawing(chart: Chart) -> Drawing:
+        return Drawing(chart.readable())
+
+    return rendering.render("report/page.html.j2", page=page, drawing=drawing, drawn=drawn)
 
 
 def write(path: Path, page: Page, formats: Sequence[str] = ()) -> Path:

@@ -17,7 +17,14 @@ from .plan import ScenePlan
 
 LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out
-OF_STAGES = ("densification", "heckel", "kawakita", "springback")  # key figures of a press
+OF_STAGES = (
+    "punch_force",
+    "densification",
+    "heckel",
+    "kawakita",
+    "springback",
+    "side_pressure",
+)  # key figures of a press
 OF_FRAMES = {"mass_flow": MassFlow, "rebound_speed": ReboundSpeed}  # key figures from frames, by their check
 SURFACE = 0.95  # of the mass of a bed, nearest to its middle: beyond it single spheres have rolled away
 

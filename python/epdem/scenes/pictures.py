@@ -2,6 +2,7 @@
 """Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
 
 import hashlib
+import math
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from ..base.files import atomic
+from ..base.readable import in_words
 from ..case.walls import Room
 from ..errors import CaseError
 from ..report.chart import Axis, fingerprint, holds
@@ -22,7 +24,7 @@ AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture
 DPI = 200
 MOST_PLACED = 4000  # spheres that are placed for the picture of a scene before its run
 WIDE = 6.0  # inches
-LABELS = 0.7, 0.8  # room of labels and title beside and above the axes [inch]
+TITLE = 0.5  # room of the title above the axes [inch]
 BAR = 1.0  # room of a colour bar [inch]
 # discs of a sphere from its rim to the highlight: share of the radius, shift to the upper left over the radius, light
 # (1: its colour, 2: white)
@@ -103,23 +105,29 @@ def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, color: FloatArra
     axis.add_collection(EllipseCollection(size.ravel(), size.ravel(), angles, offsets=offsets, **look))
 
 
+def _round(length: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten up to a length."""
+    power = 10.0 ** math.floor(math.log10(length))
+    return max(x * power for x in (1.0, 2.0, 5.0) if x * power <= length)
+
+
 def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any, Any]:
-    """A figure in which these places are seen, lengths in millimetres along its sides; room `beside` it [inch]."""
+    """A figure in which these places are seen, with a bar of a length; room `beside` it [inch]."""
     from matplotlib.figure import Figure
-    from matplotlib.ticker import FuncFormatter
 
     plane, _ = _axes()
     seen = corners @ plane.T
     low, high = seen.min(axis=0), seen.max(axis=0)
-    margin = 0.04 * (high - low).max()
+    margin = 0.06 * (high - low).max()
     ratio = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin)
-    height = (WIDE - LABELS[0] - beside) * ratio + LABELS[1]
+    height = (WIDE - beside) * ratio + TITLE
     fig = Figure(figsize=(WIDE, float(np.clip(height, 2.5, 11.0))), layout="constrained")
     axis = fig.subplots()
     axis.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
-    for side in (axis.xaxis, axis.yaxis):
-        side.set_major_formatter(FuncFormatter(lambda x, _: f"{1e3 * x:g}"))
-    axis.set(xlabel="[mm]", ylabel="[mm]")
+    axis.set_axis_off()
+    length = _round(0.2 * (high[0] - low[0]))
+    axis.plot([low[0], low[0] + length], [low[1] - 0.5 * margin] * 2, "k", lw=2.0)
+    axis.text(low[0] + length + 0.5 * margin, low[1] - 0.5 * margin, in_words(length, "m"), va="center", fontsize=8)
     axis.set_title(title, parse_math=False, fontsize=9)
     return fig, axis
 

@@ -8,14 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from ..base.terminal import Shown, frame_table, heads, warned
+from ..base import readable
+from ..base.readable import in_words
+from ..base.terminal import Shown, cell, frame_table, heads, warned
 from ..case.outputs import MassFlow, ReboundSpeed
-from ..case.parts import MEASURES, Histogram, Load, Measure
+from ..case.parts import MEASURES, Histogram, Load
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from ..report.page import Picture
-from . import checks, pictures, stages
+from . import checks, pictures, press_figures, stages
 from .columns import LOADS, place, units
 from .measures import curve, values_of
 from .plan import ScenePlan
@@ -24,7 +26,6 @@ from .run import SceneOutcome
 Tables = dict[str, pd.DataFrame]
 TIME = Axis("time", "s")
 BINS = 30
-MEASURED_POINTS = 5  # kind of marker, as of measured impacts
 COLOURS = {
     "kinetic": 0,
     "rotation": INK,
@@ -36,6 +37,8 @@ COLOURS = {
 }
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
+FIRST = ("phase", "asked", "reached", "error", "relative_density", "springback", "height")  # columns of stages
+SHARES = ("error", "springback")  # in percent for readers
 CHECKED = {name: name for name in ("check", "value", "expected", "unit", "error", "tolerance")} | {"passed": "pass"}
 
 
@@ -49,15 +52,8 @@ def charts(outcome: SceneOutcome) -> list[Chart]:
 def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The measures against time."""
     found = [m for m in p.scene.measure if not isinstance(m, Histogram) and m.name not in p.scene.key_figure]
-    curves = {m.name: _shown_curve(m, tables) for m in found}
+    curves = {m.name: (MEASURES[m.kind].unit, *curve(m, tables)) for m in found}
     return _against_time(p, "scene_measures", "Measures against time", curves)
-
-
-def _shown_curve(m: Measure, tables: Tables) -> tuple[str, np.ndarray, np.ndarray]:
-    """(unit, times [s], values) of a measure for readers: angles in degrees."""
-    times, values = curve(m, tables)
-    unit = MEASURES[m.kind].unit
-    return ("deg", times, np.degrees(values)) if unit == "rad" else (unit, times, values)
 
 
 def rows(outcome: SceneOutcome) -> list[Chart]:
@@ -85,7 +81,8 @@ def _against_time(
         return []
     alt = f"Against time: {', '.join(found)}."
     if constant:
-        alt += f" Constant: {', '.join(f'{label} = {value:.5g}' for label, value in constant.items())}."
+        said = (f"{label} = {in_words(value, curves[label][0], 5)}" for label, value in constant.items())
+        alt += f" Constant: {', '.join(said)}."
     if len(p.phases) > 1:
         alt += f" Dotted lines: ends of the phases {', '.join(phase.name for phase in p.phases[:-1])}."
     panels, columns = [_with_phases(p, panel) for panel in found.values()], min(COLUMNS, len(found))
@@ -165,77 +162,6 @@ def _mass_flow(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(TIME, Axis("mass below the outlet", "kg"), series)]
 
 
-def _pressure(p: ScenePlan, tables: Tables) -> np.ndarray:
-    return np.asarray(tables["rows"][p.scene.stages.pressure])  # type: ignore[union-attr]
-
-
-def _densification(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """Relative density against pressure, and the ends of the phases."""
-    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
-    ends = tables["stages"]
-    series = [
-        Series("punch", pressure, density, 0),
-        Series("ends of phases", ends["pressure"].to_numpy(), ends["relative_density"].to_numpy(), INK, None, 0),
-    ]
-    if known := p.case.measured:
-        x, y = np.array(known.pressures), np.array(known.relative_densities)
-        series.append(Series("measured", x, y, INK, None, MEASURED_POINTS))
-    return [Panel(Axis("pressure", "Pa"), Axis("relative density"), series)]
-
-
-LEAST_POINTS = 3  # of a line through stages
-
-
-def _heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """ln 1/(1-D) against the largest pressure so far, and Heckel's line through the ends of loading.
-
-    Heckel 1961, Trans. Metall. Soc. AIME 221, 671; the slope is the inverse of an apparent yield pressure.
-    """
-    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
-    rising = (pressure >= np.maximum.accumulate(pressure)) & (pressure > 0.0) & (density < 1.0)
-    series = [Series("punch", pressure[rising], -np.log(1.0 - density[rising]), 0)]
-    ends = stages.compared(stages.loaded(p, tables["stages"]))
-    if len(ends) >= LEAST_POINTS:
-        x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].to_numpy())
-        slope, begin = np.polyfit(x, y, 1)
-        name = f"Heckel, {len(x)} points, 1/slope = {1.0 / slope:.3g} Pa"
-        series.append(Series(name, x, begin + slope * x, INK, "dash"))
-    return [Panel(Axis("pressure", "Pa"), Axis("ln 1/(1 - relative density)"), series)]
-
-
-def _kawakita(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """P/C against P, C = 1 - D0/D with the density D0 at which the punch meets the bed, and the line through the ends
-    of loading, P/C = 1/(a b) + P/a.
-
-    Kawakita and Luedde 1971, Powder Technol. 4, 61.
-    """
-    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
-    ends = stages.compared(stages.loaded(p, tables["stages"]))
-    if len(ends) < LEAST_POINTS or not (pressure > 0.0).any():
-        return []
-    first = float(density[np.argmax(pressure > 0.0)])
-    x = ends["pressure"].to_numpy()
-    y = x / (1.0 - first / ends["relative_density"].to_numpy())
-    slope, begin = np.polyfit(x, y, 1)
-    name = f"Kawakita, {len(x)} points, a = {1.0 / slope:.3g}, 1/b = {begin / slope:.3g} Pa"
-    series = [Series("ends of stages", x, y, INK, None, 0), Series(name, x, begin + slope * x, INK, "dash")]
-    return [Panel(Axis("pressure", "Pa"), Axis("pressure over volume reduction", "Pa"), series)]
-
-
-def _springback(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """Axial strain since the end of loading against pressure, a curve for each release."""
-    rows, ends, pressure = tables["rows"], tables["stages"], _pressure(p, tables)
-    loaded = ends["height"].where(ends["springback"].isna()).ffill()
-    series: list[Series] = []
-    for n in np.flatnonzero(ends["springback"].notna()):
-        during = rows["step"].between(ends["step"][n - 1], ends["step"][n], inclusive="right")
-        strain = rows["height"][during] / loaded[n] - 1.0
-        series.append(
-            Series(ends["phase"][n], pressure[during], strain.to_numpy(), 1 + len(series) % (len(PALETTE) - 1))
-        )
-    return [Panel(Axis("pressure", "Pa"), Axis("springback"), series)] if series else []
-
-
 def _column(p: ScenePlan, tables: Tables, name: str) -> list[Panel]:
     """A column of the rows or of the measures against time; kinetic energy, which falls by powers of ten, as such."""
     table = tables["measures" if name in tables.get("measures", ()) else "rows"]
@@ -284,12 +210,6 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     return found
 
 
-OF_ROWS: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
-    "densification": _densification,
-    "heckel": _heckel,
-    "kawakita": _kawakita,
-    "springback": _springback,
-}
 OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
     "mass_flow": _mass_flow,
     "rebound_speed": _rebound_speed,
@@ -297,13 +217,11 @@ OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
 
 
 def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """The panels of the key figure; none where the tables lack the data."""
+    """The panels of the key figure, which share their x axis; none where the tables lack the data."""
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
     found: list[Panel] = []
-    for name in p.scene.key_figure:
-        if name in OF_ROWS:
-            found += OF_ROWS[name](p, tables)
-        elif name not in OF_FRAMES:
+    for name in (name for name in p.scene.key_figure if name not in press_figures.FIGURES):
+        if name not in OF_FRAMES:
             found += _column(p, tables, name)
         elif frames:
             found += OF_FRAMES[name](p, tables)
@@ -311,10 +229,16 @@ def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 
 def key(p: ScenePlan, tables: Tables) -> list[Chart]:
-    """The key figure of a scene, if there is one."""
-    found = panels(p, tables)
-    said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in found))
-    return [Chart("key", p.case.case.title, f"{said}.", found, heading=f"Key figure: {said}")] if found else []
+    """The key figure of a scene, if there is one, and the figures of a press, each for itself; the first is `key`."""
+    found, title = [], p.case.case.title
+    if shared := panels(p, tables):
+        said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in shared))
+        found.append(Chart("key", title, f"{said}.", shared, heading=f"Key figure: {said}"))
+    for name in (name for name in p.scene.key_figure if name in press_figures.FIGURES):
+        figure = press_figures.FIGURES[name]
+        if drawn := figure.panels(p, tables):
+            found.append(Chart(name if found else "key", title, figure.caption, drawn, heading=figure.heading))
+    return found
 
 
 def document(outcome: SceneOutcome) -> dict[str, object]:
@@ -345,12 +269,14 @@ def document(outcome: SceneOutcome) -> dict[str, object]:
 def shown(outcome: SceneOutcome) -> list[Shown]:
     """Checks, measures, stages, warnings and a summary line."""
     p, tables = outcome.plan, outcome.results.tables
-    found: list[Shown] = [frame_table(outcome.case.case.title, tables["checks"], CHECKED)]
+    found: list[Shown] = []
+    if len(tables["checks"]):
+        found.append(frame_table(outcome.case.case.title, checked(tables["checks"]), CHECKED))
     if p.scene.measure:
-        found.append(frame_table("measures", _measured(p, tables)))
+        found.append(frame_table("measures", measured(p, tables)))
     if "stages" in tables:
-        names = [name for name in tables["stages"] if name not in ("step", "time", "porosity")]
-        found.append(frame_table("stages", tables["stages"], heads(names, units(tables["stages"]))))
+        table, known = stages_shown(tables["stages"])
+        found.append(frame_table("stages", table, heads(table, known)))
     came = " (from results.h5)" if outcome.reused else ""
     if outcome.resumed_from is not None:
         came = f" (continued from step {outcome.resumed_from})"
@@ -361,18 +287,48 @@ def shown(outcome: SceneOutcome) -> list[Shown]:
     return [*found, *stages.against_measured(p, tables), *warned(outcome.warnings), summary]
 
 
-def _measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
-    """The last value of each measure, and its limits."""
+def checked(table: pd.DataFrame) -> pd.DataFrame:
+    """The checks in units that readers know."""
+    return readable.rows(table, ("value", "expected"))[[*CHECKED]]
+
+
+def stages_shown(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
+    """The stages of a press with what a reader asks for first, and the units of their columns; shares in percent."""
+    names = [*FIRST, *(name for name in table if name not in (*FIRST, "step", "time", "porosity"))]
+    shares = {name: 100.0 * table[name] for name in SHARES}
+    return readable.columns(table.assign(**shares)[names], units(table) | dict.fromkeys(SHARES, "%"))
+
+
+def results(p: ScenePlan, tables: Tables) -> list[str]:
+    """A sentence for each measure with its last value, and one on the stages of a press."""
+    said = []
+    if p.scene.measure:
+        for row in measured(p, tables).to_dict("records"):
+            value = f"{cell(row['value'])} {row['unit']}".rstrip()
+            at = "" if row["kind"].endswith(", mean") else f" at {row['time [s]']:.4g} s"
+            said.append(f"{row['measure']} ({row['kind']}): {value}{at}.")
+    if "stages" in tables:
+        known = tables["stages"][tables["stages"]["asked"].notna()]
+        ends = [f"{d:.3f} at {in_words(x, 'Pa')}" for d, x in known[["relative_density", "reached"]].to_numpy()]
+        back = tables["stages"]["springback"].dropna()
+        percent = ", ".join(f"{100.0 * x:.3g}" for x in back)
+        said.append(f"Relative density: {', '.join(ends)}." + f" Springback: {percent} %." * bool(percent))
+    return said
+
+
+def measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
+    """The last value of each measure and its limits, in units that readers know."""
     found = []
     for m in p.scene.measure:
         if isinstance(m, Histogram):
             values = values_of(p, m, tables)
             kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
-            time, unit = tables["measures"]["time"].iloc[-1], MEASURES[m.kind].unit
+            time = tables["measures"]["time"].iloc[-1]
         else:
-            unit, times, values = _shown_curve(m, tables)
+            times, values = curve(m, tables)
             kind, value, time = m.kind, float(values[-1]), times[-1]
         known = values[np.isfinite(values)]
         limits = (known.min(), known.max()) if known.size else (math.nan, math.nan)
-        found.append((m.name, kind, time, value, *limits, unit))
-    return pd.DataFrame(found, columns=["measure", "kind", "time [s]", "value", "smallest", "largest", "unit"])
+        found.append((m.name, kind, time, value, *limits, MEASURES[m.kind].unit))
+    numbers = ("value", "smallest", "largest")
+    return readable.rows(pd.DataFrame(found, columns=["measure", "kind", "time [s]", *numbers, "unit"]), numbers)

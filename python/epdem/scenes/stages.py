@@ -21,13 +21,13 @@ Tables = dict[str, pd.DataFrame]
 
 def towards(p: ScenePlan, stages: Stages, phase: Phase) -> float:
     """Speed [m/s] of the punch towards the wall that it presses against, which may move, too."""
-    axis, at = _against(p, stages, np.zeros(1))
+    axis, at = against(p, stages, np.zeros(1))
     begin = p.triangles[stages.wall][0, 0, axis]
     speed = phase.velocity(stages.wall)[axis] - phase.velocity(stages.against)[axis]
     return speed * math.copysign(1.0, at[0] - begin)
 
 
-def _against(p: ScenePlan, stages: Stages, time: np.ndarray) -> tuple[int, np.ndarray]:
+def against(p: ScenePlan, stages: Stages, time: np.ndarray) -> tuple[int, np.ndarray]:
     """Axis of the press and places [m] at times [s] of the wall that the punch presses against."""
     for w in p.scene.planes:
         if w.name == stages.against:
@@ -38,7 +38,7 @@ def _against(p: ScenePlan, stages: Stages, time: np.ndarray) -> tuple[int, np.nd
 
 def heights(p: ScenePlan, stages: Stages, time: np.ndarray) -> np.ndarray:
     """Height [m] of the bed between the punch and the wall that it presses against at times [s]."""
-    axis, at = _against(p, stages, time)
+    axis, at = against(p, stages, time)
     return np.asarray(np.abs(place(p, stages.wall, axis, time) - at))
 
 
@@ -97,7 +97,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     under_load = speed.where(speed != 0.0).ffill() > 0.0
     found["springback"] = (found["height"] / loaded - 1.0).where(speed < 0.0)
     if stages.sides and "contacts" in tables:
-        normal = _normal_forces(tables["contacts"], stages).reindex(ends, fill_value=0.0).to_numpy()
+        loads = normal_forces(tables["contacts"], stages).groupby("step")["load"].sum()
+        normal = loads.reindex(ends, fill_value=0.0).to_numpy()
         found["radial_pressure"] = (normal / (stages.perimeter * found["height"])).where(under_load)
         axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
         found["radial_over_axial"] = (found["radial_pressure"] / axial).where(axial > 0.0)
@@ -134,11 +135,11 @@ def against_measured(p: ScenePlan, tables: Tables) -> list[str]:
     return [f"relative density less the measured one: {', '.join(found)} ({known.source})"]
 
 
-def _normal_forces(contacts: pd.DataFrame, stages: Stages) -> pd.Series:
-    """Sum of the normal forces on the sides [N] by step."""
-    at_sides = contacts[contacts["wall"].isin(stages.sides)]
-    normal = np.abs((at_sides[FORCE].to_numpy() * at_sides[NORMAL].to_numpy()).sum(axis=1))
-    return pd.Series(normal, at_sides["step"].to_numpy()).groupby(level=0).sum()
+def normal_forces(contacts: pd.DataFrame, stages: Stages) -> pd.DataFrame:
+    """step, i and `load`, the normal force on the sides [N], of each contact with them."""
+    found = contacts[contacts["wall"].isin(stages.sides)]
+    normal = np.abs((found[FORCE].to_numpy() * found[NORMAL].to_numpy()).sum(axis=1))
+    return found[["step", "i"]].assign(load=normal)
 
 
 def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
@@ -205,7 +206,7 @@ def _behind(p: ScenePlan, tables: Tables) -> int:
     stages, spheres = tables["stages"], tables["particles"]
     declared = p.scene.stages
     assert declared is not None
-    axis, at = _against(p, declared, p.time_at(stages["step"].to_numpy()))
+    axis, at = against(p, declared, p.time_at(stages["step"].to_numpy()))
     height, begin = (spheres["step"].map(pd.Series(x, stages["step"])) for x in (stages["height"].to_numpy(), at))
     counts = (np.abs(spheres["xyz"[axis]] - begin) > height).groupby(spheres["step"]).sum()
     return int(counts.max())

@@ -28,8 +28,9 @@ from ..report.page import NAME, Facts, Lines, Page, Part, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
 from ..scenes.plan import ScenePlan
-from ..scenes.report import bed
+from ..scenes.report import FIRST, bed, checked, stages_shown
 from ..scenes.report import charts as charts_of_scene
+from ..scenes.report import results as results_of_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.stages import against_measured as against_measured_densities
 from ..theory.validity import SMALL_DEFORMATION
@@ -82,7 +83,8 @@ def page_of(
     every = [*parts, origin(outcome.results.attributes, hashes), cited]
     said = command or f"epdem verify rerun {outcome.folder}/results.h5"
     title = outcome.case.case.title
-    return Page(title, sentences, every, passed=outcome.passed, command=said, warnings=outcome.warnings)
+    passed = outcome.passed if isinstance(outcome, Outcome) or len(outcome.results.tables["checks"]) else None
+    return Page(title, sentences, every, passed=passed, command=said, warnings=outcome.warnings)
 
 
 def write_study_page(page: Page, folder: Path, formats: Sequence[str] = ()) -> Path:
@@ -189,14 +191,11 @@ def impacts_decks(outcome: Outcome) -> list[Lines]:
     ]
 
 
+AFTER_RELEASE = (
+    "After a release the law leaves too much stress on the sides: no radial pressure stands "
+    "there, and the force of an ejection is no result."
+)
 TABLES = [
-    (
-        "stages",
-        "Stages",
-        "The end of each phase. After a release the law leaves too much stress on the sides: no radial pressure stands "
-        "there, and the force of an ejection is no result.",
-    ),
-    ("checks", "Checks", "Each number against its expected value."),
     ("energy_balance", "Energy balance", "One row for each frame."),
     ("measures", "Measures", "One row for each frame."),
     ("histograms", "Histograms", ""),
@@ -215,7 +214,16 @@ def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
     tables, about = outcome.results.tables, outcome.results.attributes
     shown = charts_of_scene(outcome)
     engine = str(about["engine"])
-    parts: list[Part] = [*shown[:1], *bed(outcome), *shown[1:]]
+    parts: list[Part] = []
+    if "stages" in tables:
+        table, known = stages_shown(tables["stages"])
+        parts.append(Rows("Stages", table[[*FIRST]], known, "The end of each phase."))
+    parts += [*shown[:1], *bed(outcome), *shown[1:]]
+    if "stages" in tables:
+        more = table.drop(columns=[*FIRST[1:]])
+        parts.append(Rows("Plates, sides and energies at the end of each phase", more, known, AFTER_RELEASE))
+    if len(tables["checks"]):
+        parts.append(Rows("Checks", checked(tables["checks"]), note="Each number against its expected value."))
     for name, title, note in TABLES:
         table = tables.get(name)
         if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:
@@ -239,7 +247,8 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
     last, checks = tables["rows"].iloc[-1], tables["checks"]
     failed = ", ".join(checks["check"][~checks["passed"].astype(bool)])
     about = outcome.results.attributes
-    said = [
+    said = results_of_scene(p, tables)
+    said += [
         f"A scene of kind {outcome.case.kind} with law {p.model.law} in {about['engine']} (MPI ranks: "
         f"{about['ranks']}): {p.steps} steps of {p.time_step:.4g} s took {float(str(about['seconds'])):.3g} s.",
         f"At the end, at {last['time']:.4g} s, {int(last['particles'])} spheres are in the room and their kinetic "
@@ -251,7 +260,8 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
         f"{overlap:.3g}; small strain ends at w a/R* = {SMALL_DEFORMATION}."
     )
     said += [line[0].upper() + line[1:] + "." for line in against_measured_densities(p, tables)]
-    return [*said, f"These checks fail: {failed}." if failed else f"All {len(checks)} checks hold."]
+    verdict = {0: "This scene has no check.", 1: "The check holds."}.get(len(checks), f"All {len(checks)} checks hold.")
+    return [*said, f"These checks fail: {failed}." if failed else verdict]
 
 
 def _scene_facts(outcome: SceneOutcome) -> Facts:
