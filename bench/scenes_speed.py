@@ -73,8 +73,8 @@ def files(case: Path, model: str) -> dict[str, str]:
             settings=tuple(s for s in settings if not re.match("computePlasticWork|computeContactStrain", s)),
         ),
         row_words=tuple(word for word in d.row_words if not word.startswith("c_ratio")),
-        contact_columns=scene_deck.contact_columns((), 0, 1),
-        wall_contact_columns=scene_deck.contact_columns((), 0, 2),
+        contact_columns=scene_deck.contact_columns((), 0),
+        wall_contact_columns=scene_deck.contact_columns((), 0, points=2),
         history={},
         work_words=(),
     )

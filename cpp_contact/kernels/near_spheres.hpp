@@ -16,9 +16,11 @@ namespace epdem::kernels {
 /// the mesh has moved by a part of the skin.
 class NearSpheres {
  public:
-  /// Read new neighbour lists of the first `triangles`; only spheres below `owned` count.
+  /// Read new neighbour lists of the first `triangles`; only spheres below `owned` count. Spheres touch from `reach`
+  /// radii on.
   template <class SpheresOf, class PlanesOf>
-  void take(int triangles, int owned, SpheresOf spheres_of, PlanesOf planes_of) {
+  void take(int triangles, int owned, double reach, SpheresOf spheres_of, PlanesOf planes_of) {
+    reach_ = reach * (1.0 + 1e-6);      // far above round-off
     std::vector<int> place(owned, -1);  // of a sphere in spheres_
     spheres_.clear();
     listed_.clear();
@@ -60,7 +62,7 @@ class NearSpheres {
   /// contact(triangle, sphere) for all that can touch now, in the order of the neighbour lists.
   template <class F>
   void each(const SphereKernels& kernels, F contact) {
-    const NearTest test{now_.data(), reach, 0.0};
+    const NearTest test{now_.data(), reach_, 0.0};
     const int* candidates = near_.data();
     for (const Near& near : triangles_) {
       const int n = kernels.near_triangle(test, near.planes, candidates, near.count, found_.data());
@@ -70,8 +72,6 @@ class NearSpheres {
   }
 
  private:
-  const double reach = 1.0 + 1e-6;  // far above round-off
-
   struct Near {
     int triangle, count;
     TrianglePlanes planes;
@@ -79,7 +79,7 @@ class NearSpheres {
 
   void shorten(const SphereKernels& kernels, double slack) {
     triangles_.clear();
-    const NearTest test{now_.data(), reach, slack};
+    const NearTest test{now_.data(), reach_, slack};
     int *candidates = all_.data(), *near = near_.data();
     for (const Near& listed : listed_) {
       const int n = kernels.near_triangle(test, listed.planes, candidates, listed.count, near);
@@ -117,6 +117,7 @@ class NearSpheres {
     return dx * dx + dy * dy + dz * dz;
   }
 
+  double reach_ = 1.0;
   bool is_new_ = false;               // there are no short lists yet
   std::vector<int> spheres_;          // each once
   std::vector<double> now_, before_;  // rows of position and radius: in this step, and when the short lists were made

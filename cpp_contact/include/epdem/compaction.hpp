@@ -284,14 +284,17 @@ template <class Law, class T = Number<Law>>
   const Point<T>& peak = s.step.after.point;
   const auto stored = [&](auto yielded, const Point<T>& p, T softness, T delta_max, T delta) {
     const T at = max(T{}, delta), one = constant<T>(1.0);
+    if (!any(!yielded)) return stored_work(law.E_star / softness, p, delta_max, at);
     const Point<T> safe = select(yielded, p, Point<T>{one, one, T{}});
     return select(yielded, stored_work(law.E_star / softness, safe, delta_max, at), hertz_work(law.E_star, R_star, at));
   };
   // below the peak the overlap moves on a branch, which the sums change: the change at the middle of the step
   const T middle = min(overlap - 0.5 * closing, select(was_dented, s.reached, overlap));
-  T lost = stored(was_dented, peak_before, soft_before, s.reached + v0, middle + v0) -
-           stored(dented, peak, s.softness, b, middle + v);
   const auto yields = dented & (overlap >= s.reached);
+  T lost{};
+  if (any(!yields))
+    lost = stored(was_dented, peak_before, soft_before, s.reached + v0, middle + v0) -
+           stored(dented, peak, s.softness, b, middle + v);
   if (any(yields)) {
     const T delta_Y = law.elastic_overlap(R_star), b0 = select(known, s.reached + v0, T{});
     const T from = select(yields, max(T{}, b0), delta_Y), to = select(yields, b, delta_Y);
@@ -301,8 +304,8 @@ template <class Law, class T = Number<Law>>
       F0 = select(was_dented, safe.force, F0);
       U0 = select(was_dented, recovered_work(law.E_star, safe), U0);
     }
-    const T U = stored_work(law.E_star, select(yields, peak, peak_before), to, to);
-    const T work = law.work(R_star, from, to) + U0 - U;
+    const T U = recovered_work(law.E_star, select(yields, peak, peak_before));
+    const T work = law.work(R_star, from, to, F0, peak.force) + U0 - U;
     const T paid = 0.5 * (F0 + peak.force) * (v - v0);
     lost = select(yields, work - paid + (s.state.unstored - s.last.unstored), lost);
   }

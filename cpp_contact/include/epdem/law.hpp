@@ -193,12 +193,13 @@ inline Number<Law> elastic_energy(const Law& law, Number<Law> R_star, const Step
 
 namespace detail {
 
-/// Whether a law has its own work between two overlaps, because its work from zero on takes long.
+/// Whether a law has its own work between two overlaps of known forces, because its work from zero on takes long.
 template <class Law, class = void>
 inline constexpr bool has_work_between = false;
 template <class Law>
-inline constexpr bool has_work_between<
-    Law, std::void_t<decltype(std::declval<Law>().work(Number<Law>{}, Number<Law>{}, Number<Law>{}))>> = true;
+inline constexpr bool
+    has_work_between<Law, std::void_t<decltype(std::declval<Law>().work(Number<Law>{}, Number<Law>{}, Number<Law>{},
+                                                                        Number<Law>{}, Number<Law>{}))>> = true;
 
 }  // namespace detail
 
@@ -214,9 +215,14 @@ inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const Stat
     const T yield = law.elastic_overlap(R_star);  // for lanes that do not yield
     const T from = select(yields, max(T{}, before.delta_max), yield), to = select(yields, now.after.delta_max, yield);
     const auto yielded = from > yield;
-    T held = hertz_work(law.E_star, R_star, from);  // before the step
-    if (any(yielded)) held = select(yielded, recovered_work(law.E_star, law.load(R_star, max(from, yield))), held);
-    return select(yields, law.work(R_star, from, to) + held - stored, T{});
+    // before the step
+    T force = hertz_point(law.E_star, R_star, from).force, held = hertz_work(law.E_star, R_star, from);
+    if (any(yielded)) {
+      const Point<T> peak = law.load(R_star, max(from, yield));
+      force = select(yielded, peak.force, force);
+      held = select(yielded, recovered_work(law.E_star, peak), held);
+    }
+    return select(yields, law.work(R_star, from, to, force, now.force) + held - stored, T{});
   }
   const T work = law.work(R_star, only(yields, now.after.delta_max)) - stored;  // it is on the backbone
   return select(yields, work - plastic_work(law, R_star, only(yields, before.delta_max)), T{});

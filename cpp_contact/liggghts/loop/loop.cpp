@@ -138,7 +138,7 @@ void PairLoop::gather(const Plan& plan) {
   const auto stands = [&](int i, int j, int place) {
     const int slot = slots_[place];
     int& flag = pair_->listgranhistory->firstneigh[i][slot];
-    if ((reach == Reach::grown || flag != 0) && stands_across_gap(plan, i, j, slot)) return true;
+    if ((reach == Reach::grown || flag != 0) && stands_across_gap(plan, i, j, slot, flag != 0)) return true;
     flag &= ~flags_;
     return false;
   };
@@ -161,10 +161,11 @@ void PairLoop::finish(const Plan& plan, int n) {
   if (plan.tally && plan.adds_friction) add_friction(*plan.tally, n);
 }
 
-bool PairLoop::stands_across_gap(const Plan& plan, int i, int j, int slot) const {
-  const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
-  const bool is_new = pass_.now - h[plan.last_step] > 1.0;
-  return exists(plan.gap, is_new ? nullptr : h, gap_of(pass_, atom->radius, i, j), false);
+/// A pair without a mark is new: its history is not read.
+bool PairLoop::stands_across_gap(const Plan& plan, int i, int j, int slot, bool marked) const {
+  const double* h = marked ? pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot : nullptr;
+  if (h && pass_.now - h[plan.last_step] > 1.0) h = nullptr;
+  return exists(plan.gap, h, gap_of(pass_, atom->radius, i, j), false);
 }
 
 /// Gathers n contacts and marks them in LIGGGHTS's list.

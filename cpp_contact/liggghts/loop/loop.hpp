@@ -66,7 +66,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void gather(const Plan& plan);
   template <Reach reach>
   void finish(const Plan& plan, int n);
-  bool stands_across_gap(const Plan& plan, int i, int j, int slot) const;
+  bool stands_across_gap(const Plan& plan, int i, int j, int slot, bool marked) const;
   void fetch(const Plan& plan, int n);
   template <bool torques, bool tallies, Reach reach>
   void scatter(const Plan& plan, int n);

@@ -39,18 +39,18 @@ struct NearMesh {
 
   /// For a step.
   void update(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const LoopState& loops,
-              double slack) {
+              const LAMMPS_NS::Neighbor& neighbor) {
     const int triangles = mesh.sizeLocal() + mesh.sizeGhost();
     if (search != loops.mesh_searches) {
       const auto& listed = Lists::of(lists);
       spheres.take(
-          std::min(triangles, static_cast<int>(listed.size())), atom.nlocal,
+          std::min(triangles, static_cast<int>(listed.size())), atom.nlocal, neighbor.contactDistanceFactor,
           [&](int t) -> const std::vector<int>& { return listed[t].contacts; },
           [&](int t) { return Triangles::planes(mesh, t); });
       search = loops.mesh_searches;
     }
     const double* const corners = mesh.isMoving() && triangles > 0 ? Triangles::corners(mesh) : nullptr;
-    spheres.update(loops.kernels.spheres, atom.x[0], atom.radius, corners, triangles, slack);
+    spheres.update(loops.kernels.spheres, atom.x[0], atom.radius, corners, triangles, neighbor.skin / 4.0);
   }
 };
 
@@ -151,8 +151,7 @@ namespace loop = epdem::liggghts::loop;
   auto* const wall = dynamic_cast<loop::BatchedWall*>(impl);
   const loop::ScopedWall work(wall, *this);
   const loop::LoopState* const loops = wall ? loop::active_loops(lmp) : nullptr;
-  bool batched_mesh_loop =
-      loops && neighbor->contactDistanceFactor == 1.0 && atom->sphere_flag && !atom->shapetype_flag && atom->nlocal > 0;
+  bool batched_mesh_loop = loops && atom->sphere_flag && !atom->shapetype_flag && atom->nlocal > 0;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
     batched_mesh_loop &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
@@ -181,16 +180,18 @@ namespace loop = epdem::liggghts::loop;
     contact.mesh = &mesh;
     contact.fix_mesh = &fix;
     loop::NearMesh& near = kept[m]->near;
-    near.update(mesh, *fix.meshNeighlist(), *atom, *loops, neighbor->skin / 4.0);
+    near.update(mesh, *fix.meshNeighlist(), *atom, *loops, *neighbor);
+    const double at_distance = neighbor->contactDistanceFactor - 1.0;
     near.spheres.each(loops->kernels.spheres, [&](int triangle, int i) {
       int side;
       contact.i = i;
       contact.radi = atom->radius[i];
       const double gap = mesh.resolveTriSphereContactBary(i, triangle, contact.radi, atom->x[i], delta, weight, side);
       constexpr int face = 7;  // of LIGGGHTS's sides
-      if (!(gap <= 0.0)) return;
+      const bool intersects = gap <= 0.0;
+      if (!intersects && !(gap < at_distance * contact.radi)) return;
       if (history) {
-        if (!history->handleContact(i, mesh.id(triangle), contact.contact_history, true, side == face)) return;
+        if (!history->handleContact(i, mesh.id(triangle), contact.contact_history, intersects, side == face)) return;
         touching.spheres.push_back(i);
       }
       for (int x = 0; x < 3; ++x) {
@@ -199,7 +200,7 @@ namespace loop = epdem::liggghts::loop;
         contact.delta[x] = -delta[x];
       }
       contact.deltan = -gap;
-      impl->compute_force(this, contact, true, v_wall, &fix, m, &mesh, triangle);
+      impl->compute_force(this, contact, intersects, v_wall, &fix, m, &mesh, triangle);
     });
     if (!history) continue;
     settled ? loop::Contacts::end_unmarked(*history, touching.before) : history->cleanUpContacts();

@@ -12,11 +12,11 @@ namespace epdem::liggghts::loop {
 
 using LAMMPS_NS::FixWallGran;
 
-const char* WallLoop::obstacle(FixWallGran& wall) const {
+const char* WallLoop::obstacle(FixWallGran& wall, const Plan& plan) const {
   const bool stores = wall.store_force_contact() || wall.store_force_contact_stress();
   if (const char* why = obstacle_of_both(*atom, wall.fix_rigid(), stores, wall.store_sum_normal_force())) return why;
   if (wall.heattransfer_flag()) return "heat that walls conduct";
-  if (neighbor->contactDistanceFactor != 1.0) return "contacts at a distance";
+  if (neighbor->contactDistanceFactor != 1.0 && !plan.gap.any()) return "contacts at a distance";
   if (wall.compute_wall_gran_local() && wall.addflag()) return "steps of compute wall/gran/local";
   return beside_the_steps(*atom, wall.computeflag(), wall.shearupdate()) ? "" : nullptr;
 }
@@ -26,11 +26,18 @@ void WallLoop::open(FixWallGran& wall, const Plan& plan) {
   wall_ = &wall;
   plan_ = &plan;
   pass_ = pass_of(*atom, plan, update->dt);
+  pass_.sums = plan.growth ? plan.growth->of_all() : nullptr;
 }
 
 void WallLoop::close() {
   compute();
   wall_ = nullptr;
+}
+
+bool WallLoop::stands_across_gap(const LIGGGHTS::ContactModels::SurfacesIntersectData& s) const {
+  if (!plan_->growth) return false;
+  const double r = s.radi - s.deltan;
+  return exists(plan_->gap, s.contact_history, {r * r, s.radi, 0.0, plan_->growth->of(s.i), {}}, false);
 }
 
 void WallLoop::note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, const double* v_wall,
@@ -87,6 +94,7 @@ void WallLoop::scatter() {
       }
       mesh_[k]->add_particle_contribution(i, share, to_wall, triangle_[k], v);
     }
+    if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k]);
     if (!plan_->tally) continue;
     const double stored = b.stored_energy.a[k];
     plan_->tally->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);

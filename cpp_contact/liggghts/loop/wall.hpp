@@ -34,13 +34,16 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   explicit WallLoop(LAMMPS_NS::LAMMPS* lmp) : Pointers(lmp), block_(std::make_unique<Block>()) {}
 
   /// Why this step cannot take this loop; nullptr: it can.
-  const char* obstacle(LAMMPS_NS::FixWallGran& wall) const;
+  const char* obstacle(LAMMPS_NS::FixWallGran& wall, const Plan& plan) const;
 
   void open(LAMMPS_NS::FixWallGran& wall, const Plan& plan);
   bool is_open() const { return wall_ != nullptr; }
   void close();
 
-  /// One sphere that overlaps with the wall; `triangle` of a mesh, or none.
+  /// Whether growth closes the gap between a sphere and the wall.
+  bool stands_across_gap(const LIGGGHTS::ContactModels::SurfacesIntersectData& s) const;
+
+  /// One sphere in contact with the wall; `triangle` of a mesh, or none.
   void note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, const double* v_wall,
             LAMMPS_NS::FixMeshSurface* mesh, int triangle);
 
@@ -72,8 +75,7 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
 
   void open(LAMMPS_NS::FixWallGran& wall) override {
     const char* why = missing();
-    if (!why && plan_.growth) why = "compaction on";
-    if (!why) why = loop_.obstacle(wall);
+    if (!why) why = loop_.obstacle(wall, plan_);
     if (why)
       say(why);
     else
@@ -86,7 +88,7 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
                      int triangle = 0) override {
     double v_middle[3];
     if (triangles && intersects && velocity_in_middle(s, v_wall, *triangles, triangle, v_middle)) v_wall = v_middle;
-    if (loop_.is_open() && intersects)
+    if (loop_.is_open() && (intersects || loop_.stands_across_gap(s)))
       loop_.note(s, v_wall, mesh, triangle);
     else
       Base::compute_force(wall, s, intersects, v_wall, mesh, at, triangles, triangle);
