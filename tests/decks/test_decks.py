@@ -23,6 +23,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.jobs.engine import check
 from epdem.scenes.plan import plan as scene_plan
 from stored_decks import CASES, SPHERE, compare, planned
 
@@ -192,8 +193,8 @@ def test_a_negative_poisson_ratio_is_refused_for_liggghts_only():
     data = read_toml(CASES / "steel_wall.toml")
     data["materials"]["steel"]["poisson_ratio"] = -0.2
     x = experiment(parse(data, "test"))
-    with pytest.raises(CaseError, match="use --engine lammps"):
-        Liggghts().deck(plan(x, predict(x)))
+    with pytest.raises(CaseError, match="use --engine embedded or yade or lammps"):
+        check(Liggghts(), plan(x, predict(x)))
 
 
 def test_templates_hold_no_arithmetic():

@@ -132,7 +132,7 @@ def test_liggghts_takes_walls_only(tmp_path):
 @pytest.mark.yade
 def test_yade_without_its_module_refuses_friction_and_says_how_to_build_it(tmp_path):
     """YADE's own spring differs from the spring of the module: psi_2 would be off by 0.5."""
-    words = "epdem_yade, which is not built; run 'make yade', or name one by EPDEM_YADE_MODULE, or use"
+    words = "epdem_yade, which is not built; run 'make yade', or name one by EPDEM_YADE_MODULE or use"
     with pytest.raises(CaseError, match=words):
         outcome(tmp_path, ["yade"], angles=["20 deg", "70 deg"], speeds=["0.1 m/s"])
 

@@ -116,7 +116,7 @@ def test_doctor_and_results_say_which_laws_yade_runs(tmp_path, monkeypatch):
 
 def test_the_rolling_model_that_the_classes_lack_is_refused():
     data = parts() | {"contact": {"friction": 0.4, "rolling": {"model": "epsd", "coefficient": 0.1, "damping": 0.3}}}
-    with pytest.raises(CaseError, match=r"contact\.rolling = 'epsd': YADE's laws have cdt and epsd2; remove it or use"):
+    with pytest.raises(CaseError, match=r"contact\.rolling = 'epsd': YADE's laws have cdt and epsd2; remove it"):
         scene_deck.deck(plan(parse(data)))
 
 

@@ -12,6 +12,7 @@ from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import deck as lammps_scene
 from epdem.errors import CaseError, EngineError
+from epdem.jobs.engine import check
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
 
@@ -159,7 +160,7 @@ def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it or use"),
+        ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it"),
         ({"wall": [FLOOR, PLATE | {"wear": "1e-12 m^2/N"}]}, "scene.wall.lid.wear = 1e-12: regions have no triangles"),
         (
             {"wall": [FLOOR, PLATE], "phase": turned("z")},
@@ -173,9 +174,9 @@ def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence)
 
 
 def test_triangles_of_a_file_are_refused():
-    sentence = "scene.wall.bowl.kind = 'stl': LAMMPS's regions hold no triangles of a file; remove it or"
+    sentence = "scene.wall.bowl.kind = 'stl': LAMMPS's regions hold no triangles of a file; remove it or use --engine"
     with pytest.raises(CaseError, match=sentence):
-        scene_engine("lammps").check(plan(load(CASES / "impactor_bowl.toml")))
+        check(scene_engine("lammps"), plan(load(CASES / "impactor_bowl.toml")))
 
 
 BALL = {"material": "glass", "radius": "1.5 mm"}

@@ -5,6 +5,7 @@ Each number is compared with another route: amounts with the definition of mass 
 units, a sweep and a softened copy with the case itself.
 """
 
+import contextlib
 import math
 import os
 import re
@@ -27,6 +28,7 @@ from scene_runs import restart_steps, run, write_case, write_deck
 from engines.lammps_decks import needs_lammps
 from epdem.case.keys import keys_of
 from epdem.case.scene import SceneCase, parse
+from epdem.engines import SCENES, scene_engine
 from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as liggghts_tables
@@ -355,7 +357,7 @@ def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
 @given(chosen=CHOICES)
 def test_yade_runs_what_is_drawn(chosen, folder):
     assume(not sentences_against(chosen))
-    assert_runs_or_names_liggghts("yade", chosen, folder)
+    assert_runs_or_names_others("yade", chosen, folder)
 
 
 @needs_lammps
@@ -365,7 +367,7 @@ def test_yade_runs_what_is_drawn(chosen, folder):
 @given(chosen=CHOICES, ranks=RANKS)
 def test_lammps_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
-    assert_runs_or_names_liggghts("lammps", chosen, folder, ranks)
+    assert_runs_or_names_others("lammps", chosen, folder, ranks)
 
 
 # left out: round walls, which are triangles in LIGGGHTS
@@ -390,7 +392,7 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
         try:
             outcome = run(write_case(data, folder, "heap.toml"), tool, out=folder / f"heap_{tool}", fresh=True)
         except CaseError as error:
-            assert tool == "lammps" and "use --engine liggghts" in str(error)
+            assert_names_who_takes_it(tool, data, error)
             return
         spheres = outcome.results.particles.set_index(["step", "id"]).sort_index()
         places.append(spheres[["x", "y", "z", "vx", "vy", "vz"]])
@@ -400,12 +402,22 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
     assert np.abs(places[0] - places[1]).to_numpy().max() < limit
 
 
-def assert_runs_or_names_liggghts(tool, chosen, folder, ranks=1):
-    """What an engine lacks is refused before the run, in a sentence that names the engine that has it."""
+def assert_names_who_takes_it(tool, data, error):
+    """A refusal names each other engine whose deck the scene has, and no engine else."""
+    p, takers = plan(parse(data)), []
+    for name in SCENES.keys() - {tool}:
+        with contextlib.suppress(CaseError):
+            takers += [name] if scene_engine(name).files(p) else []
+    named = str(error).partition("--engine ")[2]
+    assert set(re.findall(r"\w+", named)) - {"or"} == set(takers), error
+
+
+def assert_runs_or_names_others(tool, chosen, folder, ranks=1):
+    """What an engine lacks is refused before the run, in a sentence that names the engines that have it."""
     try:
         assert_runs(tool, chosen, folder, ranks)
     except CaseError as error:
-        assert "use --engine liggghts" in str(error)
+        assert_names_who_takes_it(tool, case_of(chosen), error)
 
 
 def assert_runs(tool, chosen, folder, ranks=1):

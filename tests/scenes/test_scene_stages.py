@@ -110,7 +110,7 @@ def test_a_comment_in_the_case_is_no_input(case, tmp_path):
 @pytest.mark.parametrize(
     ("lacks", "options", "words"),
     [
-        ({"laws": ("hertz",)}, {}, r"law.name = .*has hertz only; use another --engine"),
+        ({"laws": ("hertz",)}, {}, r"law.name = .*has hertz only; use --engine"),
         ({"ranks": 4}, {"ranks": 5}, r"--ranks 5: .* at most 4 ranks"),
         ({"ranks": 1}, {"ranks": 2}, r"--ranks 2: .* one rank"),
         ({"features": Stored.features - {Feature.RESTART}}, {"resume": True}, r"--resume: .* from its start"),

@@ -12,12 +12,12 @@ from scene_runs import run, write_deck
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
-from epdem.engines import log
+from epdem.engines import log, scene_engine
 from epdem.engines.liggghts import launcher
-from epdem.engines.yade import deck as scene_deck
 from epdem.engines.yade import tables as yade_tables
 from epdem.engines.yade.launcher import OUT, environment
 from epdem.errors import CaseError, EngineError
+from epdem.jobs.engine import check
 from epdem.scenes import placement
 from epdem.scenes.columns import named_rows
 from epdem.scenes.plan import plan
@@ -185,18 +185,19 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
 
 
 @pytest.mark.parametrize(
-    ("name", "place", "value", "words"),
+    ("name", "place", "value", "words", "others"),
     [
-        ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2"),
-        ("settle_glass", "output", {"pictures": 2}, r"output.pictures = 2"),
+        ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2", "liggghts or lammps"),
+        ("settle_glass", "output", {"pictures": 2}, r"output.pictures = 2", "liggghts"),
     ],
 )
-def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words):
-    data = read_toml(CASES / f"{name}.toml")
+def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words, others):
+    data, tool = read_toml(CASES / f"{name}.toml"), scene_engine("yade")
     data[place] = data.get(place, {}) | value
+    tool.classes = True
     with pytest.raises(CaseError, match=words) as found:
-        scene_deck.deck(plan(parse(data)))
-    assert str(found.value).endswith("use --engine liggghts")
+        check(tool, plan(parse(data)))
+    assert str(found.value).endswith(f"remove it or use --engine {others}")
     assert found.value.exit_code == 2
 
 

@@ -6,6 +6,7 @@ from ..base.rendering import with_reasons
 from ..errors import CaseError
 from ..impacts.engine import ImpactEngine, Trajectory
 from ..impacts.plan import Plan
+from ..jobs.engine import KINDS
 from ..scenes.plan import SceneEngine, ScenePlan
 from .embedded import Embedded
 from .lammps.engine import Lammps
@@ -15,6 +16,7 @@ from .yade.engine import Yade
 ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade, Lammps)}
 # Engines of bulk scenes.
 SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (Liggghts, Yade, Lammps)}
+KINDS.update({Plan: ENGINES, ScenePlan: SCENES})
 
 
 def engine(name: str) -> ImpactEngine:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Base of LIGGGHTS, YADE and LAMMPS as engines: a deck in a folder, of impacts or of a scene."""
 
+import logging
 from abc import abstractmethod
 from collections.abc import Collection
 from pathlib import Path
@@ -9,13 +10,13 @@ from typing import Any, ClassVar
 
 from ..base import rendering as decks
 from ..base.files import stored_results
+from ..base.processes import crowded
 from ..case import impact, scene
 from ..case.toml import error_context, read_toml
-from ..errors import CaseError
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
-from ..jobs.engine import Engine, Report, check_law, silent
+from ..jobs.engine import Engine, Report, Unsupported, check_law, silent
 from ..jobs.stage import Tables, parts_hash
 from ..scenes.columns import named_rows, with_first_works
 from ..scenes.limits import refuse_bodies_in_moved_walls
@@ -26,8 +27,6 @@ from . import log
 from .frames import Frames
 from .input_script import impact_data
 from .restarts import choose, pruning
-
-LIGGGHTS = "use --engine liggghts"  # the engine of every scene
 
 
 class Host(Engine[Any, Any]):
@@ -84,6 +83,8 @@ class Host(Engine[Any, Any]):
 
     def start(self, script: str, folder: Path, **how: Any) -> float:
         """Run a deck that is in `folder` to its end; seconds taken. Raises EngineError."""
+        if said := crowded(how.get("ranks", 1)):
+            logging.getLogger("epdem").warning(said)
         return float(self.launcher.run(script, folder, **how))
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
@@ -140,17 +141,17 @@ def job_of(path: Path) -> Plan | ScenePlan:
 
 
 def refuse(place: str, value: object, reason: str) -> None:
-    """Raise CaseError if a case gives what the engine does not have. True as a value is not shown."""
+    """Raise Unsupported if a case gives what the engine does not have. True as a value is not shown."""
     if value:
         shown = "" if value is True else f" = {value!r}"
-        raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
+        raise Unsupported(f"{place}{shown}: {reason}", "remove it")
 
 
 def refuse_narrow(p: ScenePlan, least: float, reason: str) -> None:
-    """Raise CaseError for a room that repeats after less than `least` [m]."""
+    """Raise Unsupported for a room that repeats after less than `least` [m]."""
     for axis, period in zip("xyz", p.scene.periods, strict=True):
         if 0.0 < period < least * (1.0 - 1e-9):
-            raise CaseError(
-                f"scene.room.{axis}: the room repeats after {period:g} m, at least {least:.4g} m are needed: {reason}; "
-                "enlarge it, give a smaller numerics.skin, or use --engine lammps"
+            raise Unsupported(
+                f"scene.room.{axis}: the room repeats after {period:g} m, at least {least:.4g} m are needed: {reason}",
+                "enlarge it, give a smaller numerics.skin",
             )

@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import CaseError
-from ..jobs.engine import Engine, Feature, check_law, refuse_ranks
+from ..jobs.engine import Engine, Feature, Unsupported, check, check_law, refusal, refuse_ranks
 from .experiment import Experiment
 from .plan import Plan, approach
 from .prediction import Prediction
@@ -76,18 +75,14 @@ ImpactEngine = Engine[Plan, Trajectory]
 
 
 def check_features(tool: ImpactEngine, x: Experiment) -> None:
-    """Raise CaseError if an experiment needs a law or a feature that the engine does not have."""
+    """Raise Unsupported if an experiment needs a law or a feature that the engine does not have."""
     check_law(tool, x.law.name)
     if x.oblique and Feature.FRICTION not in tool.features:
-        raise CaseError(
-            f"impact.angles: engine {tool.name} runs normal impacts only; use --engine embedded, liggghts or lammps"
-        )
+        raise Unsupported(f"impact.angles: engine {tool.name} runs normal impacts only")
     if x.oblique and np.isfinite(x.target.radius) and Feature.SPHERE_FRICTION not in tool.features:
-        raise CaseError(f"impact.angles: engine {tool.name} runs oblique impacts on walls only; use --engine embedded")
+        raise Unsupported(f"impact.angles: engine {tool.name} runs oblique impacts on walls only")
     if x.viscous_restitution is not None and Feature.DASHPOT not in tool.features:
-        raise CaseError(
-            f"viscous: engine {tool.name} does not have this dashpot; use --engine embedded, liggghts or lammps"
-        )
+        raise Unsupported(f"viscous: engine {tool.name} does not have this dashpot")
 
 
 def check_plan(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> list[str]:
@@ -96,10 +91,11 @@ def check_plan(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks:
     Raises CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
     """
     refuse_ranks(tool, ranks)
-    notes = tool.check(plan)
+    notes = check(tool, plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if Feature.POSITIONS in tool.features and (why := not_representable(plan.experiment, float(overlap))):
-            raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
+            reason = f"{speed:.4g} m/s is not representable by positions ({why})"
+            raise refusal(tool, plan, reason, fits=lambda features: Feature.POSITIONS not in features)
     return notes
 
 

@@ -55,6 +55,11 @@ class Engine(Tool, Protocol[Job, Result]):
     def mpirun(self) -> str:
         """The program that starts several ranks."""
 
+    @property
+    def mpi_package(self) -> str:
+        """The step that installs `mpirun`."""
+        return ""
+
     def version(self) -> str:
         """One line: the version of the engine and of epdem's part in it."""
 
@@ -82,6 +87,52 @@ class Engine(Tool, Protocol[Job, Result]):
         """Run the deck that is in `folder`. Raises EngineError with the end of the engine's log."""
 
 
+KINDS: dict[type, dict[str, Any]] = {}  # the engines of each type of job by name; the room `engines` fills it
+
+
+class Unsupported(CaseError):
+    """A job that an engine does not have as it is. advice: the next step beside another engine; "": none."""
+
+    def __init__(self, reason: str, advice: str = ""):
+        super().__init__(f"{reason}; {advice}" if advice else reason)
+        self.advice = advice
+
+
+def check(tool: Engine[Job, Any], job: Job) -> list[str]:
+    """Sentences on what `tool` leaves out or replaces. Raises CaseError, which names the engines that take the job."""
+    try:
+        return tool.check(job)
+    except Unsupported as error:
+        raise refusal(tool, job, str(error), advice=error.advice) from None
+
+
+def refusal(
+    tool: Engine[Job, Any],
+    job: Job,
+    reason: str,
+    *,
+    advice: str = "",
+    fits: Callable[[frozenset[Feature]], bool] = lambda features: True,
+) -> CaseError:
+    """The error of a job that `tool` does not run: its reason, and the other engines that take the job as it is.
+
+    advice: what `reason` ends with. fits: of the features of another engine.
+    """
+    others = [kind() for name, kind in KINDS.get(type(job), {}).items() if name != tool.name]
+    names = [other.name for other in others if fits(other.features) and _takes(other, job)]
+    if not names:
+        return CaseError(reason if advice else f"{reason}; no engine has it")
+    return CaseError(f"{reason}{' or' if advice else ';'} use --engine {' or '.join(names)}")
+
+
+def _takes(tool: Engine[Job, Any], job: Job) -> bool:
+    try:
+        tool.check(job)
+    except CaseError:
+        return False
+    return True
+
+
 def require(*tools: Tool) -> None:
     """Raise EngineError for the first of `tools` that cannot run here."""
     for tool in tools:
@@ -96,10 +147,10 @@ def has_law(tool: Tool, law: str) -> bool:
 
 
 def check_law(tool: Tool, law: str) -> None:
-    """Raise CaseError for a law that an engine does not have."""
+    """Raise Unsupported for a law that an engine does not have."""
     if not has_law(tool, law):
         known = "no law with adhesion" if tool.laws is None else f"{', '.join(tool.laws)} only"
-        raise CaseError(f"law.name = {law!r}: engine {tool.name} has {known}; use another --engine")
+        raise Unsupported(f"law.name = {law!r}: engine {tool.name} has {known}")
 
 
 def refuse_ranks(tool: Engine[Any, Any], ranks: int) -> None:
@@ -110,4 +161,4 @@ def refuse_ranks(tool: Engine[Any, Any], ranks: int) -> None:
         limit = "one rank; leave it out" if tool.ranks == 1 else f"at most {tool.ranks} ranks here; ask for no more"
         raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {limit}")
     if ranks > 1 and shutil.which(tool.mpirun) is None:
-        raise EngineError(f"--ranks needs {tool.mpirun}, which was not found; apt-get install openmpi-bin")
+        raise EngineError(f"--ranks needs {tool.mpirun}, which was not found; {tool.mpi_package}")

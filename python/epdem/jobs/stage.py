@@ -13,8 +13,7 @@ from typing import TypeVar
 import pandas as pd
 
 from ..base.files import claim
-from ..errors import CaseError
-from .engine import Engine, Feature, Report, silent
+from .engine import Engine, Feature, Report, check, refusal, silent
 
 Tables = dict[str, pd.DataFrame]
 Job = TypeVar("Job")
@@ -67,8 +66,10 @@ def _file_hash(path: Path, changed: int, size: int) -> bytes:
 def write_deck(tool: Engine[Job, Result], job: Job, folder: Path, *, force: bool = False) -> list[Path]:
     """Write the deck of a job into `folder`, where `force` allows other files; its files. Raises CaseError."""
     if Feature.DECK not in tool.features:
-        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts, lammps or yade")
-    tool.check(job)
+        raise refusal(
+            tool, job, f"engine {tool.name}: it reads no deck", fits=lambda features: Feature.DECK in features
+        )
+    check(tool, job)
     files = tool.files(job)
     with claim(folder, force=force, files=files):
         return tool.put(files, folder)

@@ -15,7 +15,7 @@ from ..case.toml import LoadedCase, error_context, file_names, text_of
 from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from ..jobs.engine import Feature, Report, refuse_ranks, silent
+from ..jobs.engine import Feature, Report, check, refusal, refuse_ranks, silent
 from ..jobs.stage import Inputs, Tables, inputs, without_comments
 from . import checks, measures, pictures, results, stages
 from .plan import Resumed, SceneEngine, ScenePlan, plan
@@ -64,7 +64,7 @@ def _stored(folder: Path, key: str) -> results.SceneResults | None:
 
 def run_plan(p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
-    engine.check(p)
+    check(engine, p)
     engine.write(p, folder)
     return engine.run(p, folder, ranks=ranks, report=report)
 
@@ -92,11 +92,12 @@ def run(
         measures.refuse_measures(p)
         pictures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
-        notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
+        notes = [*check(engine, p), *planned_warnings(p), *case_warnings(model), *domain]
     planned(p)
     refuse_ranks(engine, ranks)
     if resume and Feature.RESTART not in engine.features:
-        raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
+        said = f"--resume: a scene in {engine.name} runs from its start; leave it out"
+        raise refusal(engine, p, said, advice="leave it out", fits=lambda features: Feature.RESTART in features)
     if reason := engine.missing():
         raise EngineError(reason)
     version = engine.version()

@@ -9,13 +9,13 @@ from itertools import combinations
 import numpy as np
 
 from ...base import rendering as decks
-from ...errors import CaseError
 from ...impacts.plan import Plan
+from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.columns import columns_of_frames
 from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
-from ..host import LIGGGHTS, refuse
+from ..host import refuse
 from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words
 from .scene_walls import DeckWall, force, height, meshes, motions, plane, restart_commands, stop_commands, way
@@ -54,7 +54,7 @@ def check(p: ScenePlan) -> None:
     for fill in p.insertions:
         refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")
     if not len(placement.spheres(p)):
-        raise CaseError(f"scene: no sphere is there at the start, LAMMPS needs one; {LIGGGHTS}")
+        raise Unsupported("scene: no sphere is there at the start, LAMMPS needs one")
 
 
 @dataclass(frozen=True)

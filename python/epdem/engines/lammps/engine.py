@@ -45,6 +45,10 @@ class Lammps(Host):
     def mpirun(self) -> str:
         return launcher.mpirun()
 
+    @property
+    def mpi_package(self) -> str:
+        return launcher.mpi_package()
+
     def parts(self) -> list[Path]:
         plugin = paths.native("lammps/epdemplugin.so")
         return [plugin] if plugin else []

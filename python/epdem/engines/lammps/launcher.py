@@ -79,6 +79,13 @@ def mpirun() -> str:
     return str(mpi.parent / "bin" / "mpiexec") if mpi and "EPDEM_LAMMPS" not in os.environ else "mpiexec"
 
 
+def mpi_package() -> str:
+    """The step that installs `mpirun`."""
+    if "EPDEM_LAMMPS" in os.environ:
+        return "put the mpiexec of the MPI with which EPDEM_LAMMPS is built on PATH"
+    return "run 'pip install --force-reinstall mpich'"
+
+
 def command(deck: str, *, ranks: int = 1) -> list[str]:
     """The command that runs a deck in its folder, with a LAMMPS that is not `missing`."""
     lammps = [str(program()), "-in", deck, "-log", "none"]

@@ -20,12 +20,12 @@ from ...case.walls import (
     RotateMove,
     VibrateMove,
 )
-from ...errors import CaseError
+from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
-from ..host import LIGGGHTS, refuse
+from ..host import refuse
 from ..input_script import WRITE_RESTART, bed_height
 from . import words
 
@@ -46,9 +46,9 @@ def contact(p: ScenePlan, name: str) -> str:
     spheres = [i for i, t in enumerate(p.model.types, 1) if not t.wall]
     found = {words.options(p.model, i, wall) for i in spheres}
     if len(found) > 1:
-        raise CaseError(
-            f"contact.pairs: a wall in LAMMPS has one contact with all spheres, wall {name} has {len(found)}; give the "
-            f"wall the same friction and restitution with all materials, or {LIGGGHTS}"
+        raise Unsupported(
+            f"contact.pairs: a wall in LAMMPS has one contact with all spheres, wall {name} has {len(found)}",
+            "give the wall the same friction and restitution with all materials",
         )
     return f"{words.of_type(p.model, wall)} {found.pop()}".rstrip()
 
@@ -126,9 +126,7 @@ def _side(p: ScenePlan, w: BoxWall | CylinderWall | ConeWall) -> str:
     inside = {_holds(w, row[:3]) for phase in p.phases for row in placement.spheres(p, phase.name).tolist()}
     inside |= {_holds(w, list(b.position)) for b in p.scene.later}
     if len(inside) > 1:
-        raise CaseError(
-            f"scene.wall.{w.name}: a closed wall in LAMMPS has spheres on one side, and this one on both; {LIGGGHTS}"
-        )
+        raise Unsupported(f"scene.wall.{w.name}: a closed wall in LAMMPS has spheres on one side, and this one on both")
     return " side in" if inside == {True} else " side out"
 
 

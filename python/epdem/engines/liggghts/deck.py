@@ -12,6 +12,7 @@ from ...base.declarations import declarations
 from ...case.walls import LinearMove
 from ...errors import CaseError
 from ...impacts.plan import Plan
+from ...jobs.engine import Unsupported
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
@@ -111,26 +112,27 @@ def contact_columns(slots: Collection[int], values: int, points: int = 0) -> tup
 
 
 def _refuse_room(p: ScenePlan) -> None:
-    """Raise CaseError for a room in which LIGGGHTS cannot count the cells where it looks for neighbours."""
+    """Raise Unsupported for a room in which LIGGGHTS cannot count the cells where it looks for neighbours."""
     sides = [high - low for low, high in zip(p.box[::2], p.box[1::2], strict=True)]
     width = p.largest + 0.5 * SKIN * p.smallest  # half of the longest reach
     cells = math.prod(max(1.0, side / width) for side in sides)
     if cells > MOST_CELLS:
-        raise CaseError(
+        raise Unsupported(
             f"scene: the room of {' x '.join(f'{side:g}' for side in sides)} m has {cells:.3g} cells of the size of "
-            f"the spheres, LIGGGHTS takes {MOST_CELLS}; check the units of lengths, speeds and rates"
+            f"the spheres, LIGGGHTS takes {MOST_CELLS}",
+            "check the units of lengths, speeds and rates",
         )
 
 
 def _refuse_meshes(p: ScenePlan) -> None:
-    """Raise CaseError for a mesh that LIGGGHTS takes for an empty one."""
+    """Raise Unsupported for a mesh that LIGGGHTS takes for an empty one."""
     formulas = tubes(p)
     for name, triangles in p.triangles.items():
         if name not in formulas and np.ptp(triangles) < LEAST_SPAN:
-            raise CaseError(
+            raise Unsupported(
                 f"scene.wall.{name}: its coordinates span {np.ptp(triangles):.3g} m, LIGGGHTS takes meshes from "
-                f"{LEAST_SPAN:g} m on; give all lengths 1000 times, which changes no density under pressure without "
-                "gravity and adhesion, or use --engine lammps"
+                f"{LEAST_SPAN:g} m on",
+                "give all lengths 1000 times, which changes no density under pressure without gravity and adhesion",
             )
 
 
@@ -145,12 +147,11 @@ def _refuse_skin(p: ScenePlan) -> None:
 
 
 def _refuse_restarts(p: ScenePlan) -> None:
-    """Raise CaseError for motions that LIGGGHTS's restart files do not hold."""
+    """Raise Unsupported for motions that LIGGGHTS's restart files do not hold."""
     others = any(not isinstance(move, LinearMove) for phase in p.phases for move in phase.moves.values())
     if p.restarts and others:
-        raise CaseError(
-            "output.restarts: in LIGGGHTS only walls with linear motions go on where they were; remove it or use "
-            "--engine lammps"
+        raise Unsupported(
+            "output.restarts: in LIGGGHTS only walls with linear motions go on where they were", "remove it"
         )
 
 

@@ -36,6 +36,7 @@ class Liggghts(Host):
     template = "liggghts/impact.in.j2"
     ranks = most_ranks()
     mpirun = launcher.MPIRUN
+    mpi_package = "apt-get install openmpi-bin"
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
     left_out: ClassVar[dict[str, str]] = {"balance": "the borders of ranks in LIGGGHTS do not move"}
     launcher, scene_deck, tables, resumed = launcher, deck, tables, resume

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...base.declarations import declarations
 from ...errors import CaseError
+from ...jobs.engine import Unsupported
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..input_script import finite
@@ -54,10 +55,7 @@ def elastic(m: Model) -> tuple[Property, ...]:
     """Young's moduli [Pa] and Poisson's ratios of the atom types. Raises CaseError for a ratio beyond LIGGGHTS's."""
     for t in m.types:
         if t.poisson_ratio < 0:
-            raise CaseError(
-                f"materials.{t.material}.poisson_ratio = {t.poisson_ratio}, LIGGGHTS takes [0, 0.5] only; use "
-                "--engine lammps"
-            )
+            raise Unsupported(f"materials.{t.material}.poisson_ratio = {t.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
     moduli, ratios = [finite(t.young_modulus) for t in m.types], [t.poisson_ratio for t in m.types]
     return (
         per_type("youngsModulus", moduli, "Pa", reason="stiffness of every contact"),

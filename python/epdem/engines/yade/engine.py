@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from ...base.declarations import declarations, library_path
-from ...errors import CaseError
 from ...impacts.engine import check_features
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan, side_by_side
-from ...jobs.engine import Feature
+from ...jobs.engine import Feature, Unsupported
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
@@ -58,7 +57,7 @@ class Yade(Host):
         self.features = type(self).features | (self.of_classes if self.classes else set())
 
     def require_module(self, job: Plan | ScenePlan) -> None:
-        """Raise CaseError without epdem_yade for all but normal impacts without adhesion and dashpot."""
+        """Raise Unsupported without epdem_yade for all but normal impacts without adhesion and dashpot."""
         if self.classes or self.own_law:
             return
         if isinstance(job, ScenePlan):
@@ -71,10 +70,7 @@ class Yade(Host):
             place = "viscous"
         else:
             return
-        raise CaseError(
-            f"{place}: YADE has it with the module epdem_yade, which is not built; {launcher.BUILD}, or use --engine "
-            "liggghts"
-        )
+        raise Unsupported(f"{place}: YADE has it with the module epdem_yade, which is not built", launcher.BUILD)
 
     def parts(self) -> list[Path]:
         return [launcher.module() or library_path()]

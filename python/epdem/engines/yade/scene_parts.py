@@ -9,7 +9,7 @@ from functools import partial
 
 from ...base import rendering as decks
 from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, VibrateMove
-from ...errors import CaseError
+from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.meshes import spans, surface_rotation
@@ -56,11 +56,11 @@ class DeckFill:
 
 
 def check_walls(p: ScenePlan) -> None:
-    """Raise CaseError for walls that YADE does not have."""
+    """Raise Unsupported for walls that YADE does not have."""
     for name, mesh in p.scene.meshes.items():
         if surface_rotation(mesh) and any(name in phase.moves for phase in p.phases):
-            raise CaseError(
-                f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
+            raise Unsupported(
+                f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise", "remove one"
             )
 
 

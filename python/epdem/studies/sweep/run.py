@@ -28,6 +28,7 @@ from ...impacts import store as store_impacts
 from ...impacts.experiment import experiment
 from ...impacts.run import fill, prepare, stored_results
 from ...jobs.engine import Feature, require
+from ...jobs.engine import check as check_job
 from ...scenes.plan import plan as plan_scene
 from ...scenes.run import run as run_scene
 from . import folder as store
@@ -49,7 +50,7 @@ def check(sweep: Sweep, number: int, *, plans: bool = False) -> CaseError | None
             parsed = scene.parse(data, place)
             with error_context(place):
                 if plans:
-                    scene_engine(sweep.engines[0]).check(plan_scene(parsed))
+                    check_job(scene_engine(sweep.engines[0]), plan_scene(parsed))
             return None
         case = impact.parse(data, place)
         if plans:
