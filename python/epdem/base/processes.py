@@ -239,6 +239,23 @@ def engines_in(folder: Path) -> list[tuple[int, Path]]:
     return found
 
 
+def crowded(ranks: int) -> str | None:
+    """A sentence on ranks that share cores with other programs, from the load of a fifth of a second.
+
+    None for one rank, where the cores are free, and in a job of Slurm, which has its own cores.
+    """
+    if ranks == 1 or "SLURM_JOB_ID" in os.environ:
+        return None
+    loads, cores = psutil.cpu_percent(0.2, percpu=True), os.sched_getaffinity(0)
+    free = sum(1.0 - loads[core] / 100.0 for core in cores)
+    if ranks <= free + 0.5:
+        return None
+    return (
+        f"--ranks {ranks}: other programs leave about {free:.1f} of {len(cores)} cores free; a rank that waits for a "
+        "core stops all ranks: one rank is probably faster now"
+    )
+
+
 def most_ranks() -> int:
     """As many ranks as there are cores, and two anywhere: more only wait for one another, or hang.
 

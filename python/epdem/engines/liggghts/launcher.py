@@ -39,11 +39,13 @@ def command(deck: str, *, ranks: int = 1) -> list[str]:
         return ["srun", "--overlap", "--mpi=pmix", "-N", str(nodes), "-n", str(ranks), "-c", "1", *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
     mpirun = shutil.which("mpirun.openmpi") or MPIRUN  # PyPI's MPICH may stand before OpenMPI on PATH
-    return [mpirun, "-np", str(ranks), "--oversubscribe", *root, *liggghts]
+    # unbound: OpenMPI binds the ranks of every run to the first cores, whatever else runs there
+    return [mpirun, "-np", str(ranks), "--oversubscribe", "--bind-to", "none", *root, *liggghts]
 
 
 def environment(ranks: int = 1) -> dict[str, str]:
-    """This process's, with one thread per rank; waiting ranks yield the processor to those that compute.
+    """This process's, with one thread per rank; waiting ranks yield the processor to those that compute: ranks that
+    spin took twice to ten times as long beside other programs.
 
     A single rank inside a job of Slurm gets no variables of Slurm: MPI would look for an srun that did not start it.
     """
