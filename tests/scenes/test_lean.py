@@ -142,7 +142,7 @@ def test_reasons_follow_the_comments_of_a_line_and_a_line_without_one_stays(tmp_
     lines = 'units si  # guard: said\nfix a all nve{{ why("moves") }}\ndump 1  # raw{{ why("read") }}\nrun 3\n'
     (tmp_path / "own.j2").write_text(lines)
     own = jinja2.Environment(loader=jinja2.FileSystemLoader(tmp_path), **rendering.OPTIONS)
-    monkeypatch.setattr(rendering, "environment", lambda **words: rendering.prepare(own, **words))
+    monkeypatch.setattr(rendering, "environment", lambda: rendering.prepare(own))
     assert rendering.render("own.j2") == "units si  # guard: said\nfix a all nve\ndump 1  # raw\nrun 3\n"
     with rendering.with_reasons():
         found = rendering.render("own.j2")

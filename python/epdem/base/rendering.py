@@ -41,14 +41,14 @@ def line(text: object) -> str:
     return " ".join(str(text).split()).rstrip("& ")
 
 
-def prepare(env: Prepared, *, reasons: bool = False) -> Prepared:
+def prepare(env: Prepared) -> Prepared:
     """An environment with our filters and names.
 
-    `why("...")` in a template is the reason of its line: with `reasons` it follows the line after REASON, else it is
+    `why("...")` in a template is the reason of its line: in `with_reasons` it follows the line after REASON, else it is
     nothing.
     """
     env.globals["version"] = __version__
-    env.globals["why"] = (lambda reason: REASON + reason) if reasons else (lambda reason: "")
+    env.globals["why"] = lambda reason: REASON + reason if _WITH_REASONS.get() else ""
     env.filters["line"] = line
     env.filters["number"] = number
     env.filters["wall"] = wall_id
@@ -57,10 +57,10 @@ def prepare(env: Prepared, *, reasons: bool = False) -> Prepared:
 
 
 @cache  # with its templates, which take far longer to read than to fill
-def environment(*, reasons: bool = False) -> jinja2.Environment:
-    """The environment of our templates; `reasons` as in `prepare`."""
+def environment() -> jinja2.Environment:
+    """The environment of our templates."""
     loader = jinja2.FileSystemLoader(paths.beside("templates"))
-    return prepare(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
+    return prepare(jinja2.Environment(loader=loader, **OPTIONS))
 
 
 @contextmanager
@@ -75,12 +75,11 @@ def with_reasons() -> Iterator[None]:
 
 def render(template: str, /, **context: object) -> str:
     """The text of a template. Raises CaseError that names the template and the undefined name."""
-    reasons = _WITH_REASONS.get()
     try:
-        text = environment(reasons=reasons).get_template(template).render(context)
+        text = environment().get_template(template).render(context)
     except jinja2.TemplateError as error:
         raise CaseError(f"template {template}: {error}") from None
-    return "\n".join(map(_commented, text.split("\n"))) if reasons else text
+    return "\n".join(map(_commented, text.split("\n"))) if _WITH_REASONS.get() else text
 
 
 def _commented(line: str) -> str:

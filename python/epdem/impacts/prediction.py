@@ -2,6 +2,7 @@
 """The prediction of theory for an experiment."""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,10 +35,20 @@ class Prediction(Impact):
     yields: tuple[str, ...]  # materials that flow somewhere in the range of speeds; law.STRENGTH if it is one for all
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
-    caveats: tuple[str, ...] = ()  # sentences on impacts outside the law's domain
+    outside: tuple[str, ...] = ()  # sentences on impacts outside the law's domain
     finite_strain: tuple[str, ...] = ()  # sentences on contacts beyond small strain
-    wave_share: np.ndarray | None = None  # of the kinetic energy that a plane target radiates (section 8.2.4)
     observation_time: float = np.nan  # duration for which sticking bodies are observed [s]; NaN: without adhesion
+    experiment: Experiment | None = None  # None: its waves are not estimated
+
+    @cached_property
+    def wave_share(self) -> np.ndarray | None:
+        """Share of the kinetic energy that a plane target radiates, shape (n,); it takes as long as all else."""
+        return _wave_share(self.experiment) if self.experiment else None
+
+    @property
+    def caveats(self) -> tuple[str, ...]:
+        """Sentences on impacts outside the domain of the law, or in which it leaves out much."""
+        return self.outside + tuple(_radiating(self.speed, self.wave_share))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -86,7 +97,6 @@ def predict(experiment: Experiment) -> Prediction:
     strain = x.law.share * impact.radius_max / x.R_star
     flattening = x.law.strain_curvature(x.R_star, x.body.radius) * impact.radius_max / x.R_star
     effect = validity.SOFTENED if "finite_strain" in x.law.ratios() else validity.OVERESTIMATED
-    waves = _wave_share(x)
     return Prediction(
         **vars(impact),
         speed=x.speed,
@@ -94,16 +104,15 @@ def predict(experiment: Experiment) -> Prediction:
         yields=_softer(x) if law.has_yielded(impact) else (),
         yield_speeds={material: float(speed) for material, speed in first_yield.items() if speed is not None},
         rebound=oblique.predict(x, impact.e_n) if x.oblique else None,
-        caveats=(
+        outside=(
             *law.caveats(**pair),
             *_too_fast(x, impact.radius_max),
             *_turning(x, impact.contact_time, impact.overlap_max),
-            *_radiating(x, waves),
             *_surface_yield(x),
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(flattening, x.speed, effect)),
-        wave_share=waves,
         observation_time=law.observation_time(**pair),
+        experiment=x,
     )
 
 
@@ -150,13 +159,13 @@ def _wave_share(x: Experiment) -> np.ndarray | None:
     return energy_split(law, m_star=x.m_star, speed=x.speed, **half_space)["waves"]
 
 
-def _radiating(x: Experiment, share: np.ndarray | None) -> list[str]:
+def _radiating(speed: np.ndarray, share: np.ndarray | None) -> list[str]:
     """A sentence on impacts that lose much energy to waves."""
     if share is None or share.max() <= LARGEST_WAVE_SHARE:
         return []
     return [
         f"elastic waves take an estimated {100 * share.max():.2g} % of the kinetic energy, above "
-        f"{100 * LARGEST_WAVE_SHARE:g} % from {x.speed[share > LARGEST_WAVE_SHARE].min():.3g} m/s on: e_n of real "
+        f"{100 * LARGEST_WAVE_SHARE:g} % from {speed[share > LARGEST_WAVE_SHARE].min():.3g} m/s on: e_n of real "
         "impacts is lower than that of any law of force"
     ]
 

@@ -5,6 +5,8 @@ The laws of force lose no wave energy: the share of the waves is an estimate bes
 1957; Hutchings 1979).
 """
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -51,6 +53,7 @@ def _rayleigh(k2: Array, g: float) -> Array:
     return (2 * k2 - 1) ** 2 - 4 * k2 * np.sqrt(k2 - g) * np.sqrt(k2 - 1)
 
 
+@cache
 def _wave_parts(nu: float) -> tuple[float, float]:
     """Parts of C(nu) from the bulk waves and from the Rayleigh pole."""
     g = (1 - 2 * nu) / (2 * (1 - nu))
