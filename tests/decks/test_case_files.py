@@ -139,6 +139,7 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         ("case.title", "two\nlines", "one printable line"),
         ("case.source", "bell \a", "one printable line"),
         ("case.name", "../../etc", "a-z, A-Z, 0-9"),
+        ("case.name", "größe", "of the characters a-z, A-Z, 0-9, - and _, the first of them not -"),
         ("case.name", "-rf", "case.name = '-rf', must be 1 to 64 of the characters a-z, A-Z, 0-9, - and _"),
         ("case.name", "n" * 1000, f"case.name = '{'n' * 76}..., must be"),
         ("materials.steel.young_modulus", "1 " + "G" * 200, "young_modulus = '1 GGG"),

@@ -110,6 +110,18 @@ def refused(base: str | dict, changes: dict, says: str, folder: Path) -> None:
         ),
         ("steel_wall", {"materials.steel.yield_stress": 3}, "expected a quantity with a unit in quotes"),
         ("steel_wall", {"materials.steel.yield_stress": "3 blah"}, "unknown unit 'blah'"),
+        (
+            "steel_wall",
+            {"materials.steel.yield_stress": None},
+            "or yield_stress = 'inf Pa' if the material never yields",
+        ),
+        ("steel_wall", {"numerics.step_in_contact": 5}, "unknown key; the nearest: numerics.steps_in_contact"),
+        ("steel_wall", {"output": {"rows": 3}}, "output: unknown key of an impact; it belongs to scenes"),
+        (
+            "oblique_steel",
+            {"contact.tangential_restitution": 0.5},
+            "contact.tangential_restitution = 0.5, unknown key of an impact; it belongs to scenes",
+        ),
     ],
 )
 def test_impacts(case, changes, says, tmp_path):
@@ -154,6 +166,9 @@ def test_impacts(case, changes, says, tmp_path):
             "has its attraction already; remove one of them",
         ),
         ("adhesive_powder", {"contact.tangential": "partial_slip"}, "laws with adhesion have 'history' only; take it"),
+        ("settle_glass", {"check": {"e_n": 1e-3}}, "check: unknown key of a scene; it belongs to impacts"),
+        ("settle_glass", {"scene.rate": 600}, 'in quotes, as "600 Hz", got 600'),
+        ("settle_glass", {"numerics.time_step": "1 ms"}, "impact at the scene's highest speed is stable up to"),
         ("settle_glass", {"numerics.cut": "x"}, "numerics.cut = 'x', unknown key; the nearest: numerics."),
         ("compaction_powder", {"scene.height": "4 mm"}, "must be below the box's height (0.0032 m)"),
         (

@@ -94,6 +94,17 @@ def test_the_error_of_a_speed_is_that_of_its_worst_phase(steel):
     assert not rows["passed"].any() and rows["contact_time_error"].max() == 0
 
 
+def test_psi_2_of_one_spring_is_not_checked_unless_the_case_asks(tmp_path):
+    """Theory has partial slip."""
+    text = (STEEL.parent / "oblique_steel.toml").read_text().replace('tangential = "partial_slip"\n', "")
+    text = text.replace("phases = 8", "phases = 1").replace("count = 16", "count = 4")
+    for name, checks, passed in (("own", text, False), ("none", text.replace("psi_2 = 0.05", ""), True)):
+        (tmp_path / f"{name}.toml").write_text(checks)
+        found = run(tmp_path / f"{name}.toml", engines=[engine("embedded")], out=tmp_path / name)
+        assert found.passed == passed and found.results.comparison["psi_2_error"].max() > 0.05
+        assert any("psi_2 is not checked" in warning for warning in found.warnings) == passed
+
+
 def test_a_stored_result_is_used_only_while_its_inputs_are_the_same(tmp_path):
     text = STEEL.read_text().replace("count = 32", "count = 3")
     (tmp_path / "a.toml").write_text(text)

@@ -10,6 +10,7 @@ import pytest
 from epdem.base.declarations import declarations
 from epdem.case import impact, scene
 from epdem.case.keys import keys_of
+from epdem.case.plausibility import case_warnings
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -33,6 +34,32 @@ def data_with(strength, law):
 
 def strength_of(strength, law):
     return experiment(impact.parse(data_with(strength, law))).law.strengths[0]
+
+
+def test_a_material_of_impacts_has_the_strength_of_the_law_as_in_scenes():
+    data = data_with({"yield_pressure": "2.5 GPa"}, "thornton")
+    case = impact.parse(data)
+    assert experiment(case).law.strengths[0] == 2.5e9 and experiment(case, "hertz").law.strengths[0] == math.inf
+    with pytest.raises(CaseError, match="law johnson needs the yield_stress"):
+        experiment(case, "johnson")
+    with pytest.raises(CaseError, match="yield_presure = '1 Pa', unknown key with law thornton; the nearest: yield"):
+        impact.parse(data_with({"yield_presure": "1 Pa"}, "thornton"))
+    assert "materials.steel.yield_pressure" in keys_of(data) and "materials.steel.hardening" not in keys_of(data)
+
+
+@pytest.mark.parametrize("law", ["thornton", "cavity"])
+def test_a_material_that_never_yields_needs_no_number(law):
+    """Its strain is that of the other body alone; as with a strength that no pressure reaches."""
+    data = data_with({"yield_stress": "1 GPa"}, law)
+    for name, strength in (("hard", "inf Pa"), ("strong", "1e15 Pa")):
+        data["materials"][name] = data["materials"]["steel"] | {"yield_stress": strength}
+    x, other = (
+        experiment(impact.parse(data | {"impact": data["impact"] | {"target": {"material": name}}}))
+        for name in ("hard", "strong")
+    )
+    assert x.law.strengths[1] == math.inf and x.law.share == pytest.approx(1.0) == other.law.share
+    assert predict(x).e_n == pytest.approx(predict(other).e_n, rel=1e-9)
+    assert case_warnings(impact.parse(data)) == [] or "hard" not in case_warnings(impact.parse(data))[0]
 
 
 def pressure_in_the_middle(overlap):

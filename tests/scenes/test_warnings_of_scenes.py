@@ -150,6 +150,23 @@ def test_the_largest_strain_of_rows_never_falls():
     assert found["largest_overlap_ratio"].to_list() == [0.0, 0.09, 0.09]
 
 
+@pytest.mark.parametrize(("share", "said"), [(0.9, 0), (1.1, 1)])
+def test_a_phase_in_which_a_bed_settles_says_if_the_bed_still_moves_at_its_end(share, said):
+    """From 1 % of the energy of a fall by a radius on: v^2 = 0.02 g R."""
+    p = plan(load(CASES / "settle_glass.toml"))
+    R, mass, v = 1.5e-3, 2e-5, share * math.sqrt(0.02 * 9.81 * 1.5e-3)
+    ends = [0.0, 7 * 0.5 * mass * v**2]
+    spheres = {"step": p.phases[0].end, "id": range(1, 8), "radius": R, "mass": mass, "type": 1, "z": 0.0}
+    tables = {
+        "rows": pd.DataFrame(
+            {"step": [0, p.phases[0].end], "particles": 7, "kinetic_energy": ends, "largest_radius_ratio": 0.0}
+        ),
+        "particles": pd.DataFrame(spheres),
+    }
+    found = [x for x in measured_warnings(p, tables) if "still move" in x]
+    assert found == [f"phase settle ends while the spheres still move, at {v:.3g} m/s (rms); give more time"] * said
+
+
 def test_a_way_that_a_phase_is_too_short_for_is_named():
     until = {"wall": "plate", "travel": "30 mm"}
     for duration, said in (("29 ms", ["until was not reached"]), ("31 ms", [])):

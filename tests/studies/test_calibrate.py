@@ -44,6 +44,17 @@ def test_the_strength_found_from_e_n_is_the_one_that_made_it(law, times, tmp_pat
     assert math.isclose(found.yield_stress, x.body.yield_stress, rel_tol=1e-7)
 
 
+@pytest.mark.parametrize(("factor", "said"), [(0.4, True), (0.6, False), (1.8, False), (2.5, True)])
+def test_a_strength_far_from_that_of_the_material_is_said(factor, said, tmp_path):
+    """e_n of a material that is `factor` times as strong, as made by theory."""
+    path = with_law(tmp_path, "thornton")
+    x = experiment(load(path))
+    made = replace(x, law=x.law.of(*(factor * s for s in x.law.strengths)), speed=np.array([50.0]))
+    found = from_restitution(path, float(predict(made).e_n[0]), 50.0)
+    assert found.value == pytest.approx(factor * min(x.law.strengths), rel=1e-6)
+    assert [f"is {factor:.3g} times the" in w and "may be viscous" in w for w in found.warnings] == [True] * said
+
+
 def test_the_strength_of_an_adhesive_law_is_found_from_e_n(tmp_path):
     path = with_law(tmp_path, "thornton_ning")
     x = experiment(load(path))

@@ -168,6 +168,20 @@ def test_a_sweep_of_laws_has_the_keys_of_the_laws_that_it_chooses(tmp_path):
     assert check(both, 1) is None and "law.hardening_exponent" in str(check(both, 2))
 
 
+def test_a_part_of_a_list_goes_by_its_name_and_by_its_number():
+    text = (CASES / "impactor_bowl.toml").read_text()
+    names = [wall["name"] for wall in tomlkit.parse(text)["scene"]["wall"]]
+    number, wall = next((n, name) for n, name in enumerate(names) if "file" in tomlkit.parse(text)["scene"]["wall"][n])
+    keys, documents = keys_of(tomlkit.parse(text).unwrap()), [tomlkit.parse(text) for _ in range(2)]
+    for document, part in zip(documents, (wall, number), strict=True):
+        assert f"scene.wall.{part}.file" in keys
+        assign(document, f"scene.wall.{part}.file", "other.stl")
+        assert document["scene"]["wall"][number]["file"] == "other.stl"
+    assert documents[0].as_string() == documents[1].as_string()
+    with pytest.raises(CaseError, match=f"the nearest: .*scene.wall.{wall}.file"):
+        points.axes({f"scene.wall.{wall}s.file": "a,b"}, keys)
+
+
 def test_a_grid_is_every_combination_in_order():
     axes = points.axes({"impact.body.radius": "1 mm,2 mm", "law.yield_pressure": "1 GPa..3 GPa:3"}, KEYS)
     expected = product(["1 mm", "2 mm"], ["1 GPa", "2 GPa", "3 GPa"])
