@@ -5,7 +5,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem.scenes.columns import last_frame
 from epdem.scenes.model import pair_law
 
 
@@ -21,9 +20,12 @@ def assert_frames(p, tables):
 
 
 def assert_forces(p, contacts, spheres):
-    """The normal forces of the engine in the last frame are the forces of theory at the overlaps of this frame."""
-    last = last_frame(contacts)
-    ball = spheres[spheres["step"] == last["step"].iloc[0]].set_index("id")
+    """The normal forces of the engine in both end frames are the forces of theory at the overlaps of the frames."""
+    for step in {contacts["step"].min(), contacts["step"].max()}:
+        _assert_forces(p, contacts[contacts["step"] == step], spheres[spheres["step"] == step].set_index("id"))
+
+
+def _assert_forces(p, last, ball):
     normal, force = (last[[f"{name}_{axis}" for axis in "xyz"]].to_numpy() for name in ("normal", "force"))
     found = (normal * force).sum(axis=1)
     assert found == pytest.approx(last["force"].to_numpy(), abs=1e-6 * np.abs(found).max())

@@ -166,8 +166,8 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     raw = touching(p, raw)
-    if not p.model.yields:
-        raw = raw.assign(delta_max=raw["overlap"])
+    before = raw["delta_max"] if p.model.yields else raw["overlap"]  # engines may give that before the step
+    raw = raw.assign(delta_max=np.maximum(before, raw["overlap"]))
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
     turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary

@@ -99,10 +99,7 @@ def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     for w in walls(p):
         overlap, normal = overlaps(w, spheres)
         values = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
-        if p.model.yields:
-            values["delta_max"] = np.maximum(spheres[f"delta_max_{w.name}"], overlap)
-        names = [name for name in history(p.model) if name != "delta_max"] + columns.FORCE
-        others = {name: spheres[f"{name}_{w.name}"] for name in names}
+        others = {name: spheres[f"{name}_{w.name}"] for name in [*history(p.model), *columns.FORCE]}
         others |= {column: normal[:, k] for k, column in enumerate(columns.NORMAL)}
         found.append(columns.touching(p, pd.DataFrame(values | others)))  # of all spheres in all frames few do
     return found
