@@ -220,13 +220,6 @@ def test_scenes(case, changes, says, tmp_path):
         (
             {
                 "wall": [FLOOR, LID],
-                "phase": [FALL | {"move": [PRESS]}, FALL | {"name": "b", "move": [PRESS | {"force": "2 N"}]}],
-            },
-            "phases press with different forces or directions; press with one",
-        ),
-        (
-            {
-                "wall": [FLOOR, LID],
                 "phase": [FALL | {"move": [PRESS]}, FALL | {"name": "b", "move": [MOVE | {"wall": "lid"}]}],
             },
             "a wall that a force drives has no other motion; take a second wall",

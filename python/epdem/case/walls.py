@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
 from .fields import Frozen, Interval, Length, Name, Quantity, Speed, Spin, zero_vector
 from .messages import PART_NAME
@@ -280,6 +280,18 @@ class PressMove(_Move):
     direction: Direction
     force: Force
     highest_speed: Speed
+    _stable: float = PrivateAttr(math.inf)
+
+    @property
+    def speed_in_contact(self) -> float:
+        """Highest speed [m/s] while spheres touch the wall: up to which dashpots leave the motion stable."""
+        return min(self.highest_speed, self._stable)
+
+    def limited(self, stable: float) -> Self:
+        """The same motion with a stable speed [m/s]."""
+        found = self.model_copy()
+        found._stable = stable
+        return found
 
 
 Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discriminator="kind")]

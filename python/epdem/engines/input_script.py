@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.rendering import number
-from ..case.walls import PlateWall
+from ..case.walls import PlateWall, PressMove
 from ..errors import CaseError
 from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
@@ -219,6 +219,15 @@ def stop_condition(
         )
     rows, condition = (run.steps - first) // p.every, f"{sign} {number(until.limit)}"
     return StopCondition(first, rows, formula, condition, void, until.limit, p.every, p.every)
+
+
+def press_speed(force: str, move: PressMove) -> str:
+    """Formula of the speed of a wall by the word of its force on the spheres along its motion: its share of the highest
+    speed is the relative error of the force, at most 1."""
+    error, most = f"(1-{force}/{number(move.force)})", number(move.speed_in_contact)
+    if faster := move.highest_speed - move.speed_in_contact:
+        most = f"({most}+{number(faster)}*({force}==0))"
+    return f"({error}*(abs({error})<=1)+({error}>1)-({error}<-1))*{most}"
 
 
 def bed_height(bed: PressedBed, place: Callable[[str], str]) -> str:

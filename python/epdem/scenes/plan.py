@@ -2,7 +2,7 @@
 """A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -329,11 +329,15 @@ class ScenePlan:
         there = {"plastic_work": yields, "adhesive_work": adheres, "friction_work": slips, "friction_energy": slips}
         return tuple(name for name, present in there.items() if present and self.output.energy)
 
+    @property
+    def driven(self) -> list[str]:
+        """The walls that a force drives in some phase."""
+        return _driven(self.phases)
+
     def driven_before(self, phase: str) -> list[str]:
         """The walls that a force may have moved before a phase with which single spheres come."""
         names = [p.name for p in self.phases]
-        earlier = self.phases[: names.index(phase)] if any(b.phase == phase for b in self.scene.later) else ()
-        return sorted({name for p in earlier for name, move in p.moves.items() if isinstance(move, PressMove)})
+        return _driven(self.phases[: names.index(phase)]) if any(b.phase == phase for b in self.scene.later) else []
 
     def rotations(self, wall: str) -> list[RotateMove]:
         """The rotations of a wall of triangles: of its surface, and in each phase."""
@@ -346,6 +350,10 @@ class ScenePlan:
         """One line for the head of a deck."""
         steps = f"{self.steps} steps of {self.time_step:g} s"
         return f"{self.case.kind}: {self.count} spheres, law {self.model.law}, {steps}"
+
+
+def _driven(phases: Iterable[Phase]) -> list[str]:
+    return sorted({name for p in phases for name, move in p.moves.items() if isinstance(move, PressMove)})
 
 
 def _rows(output: Output) -> int:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Walls that a force drives: the speed up to which dashpots leave the servo stable, and the force that a phase reached.
 
-The speed of the wall is v (1 - F/F_0). The force F of a step has the dashpots' part n c times the speed of the step
-before, so that the speed alternates with growing amplitude where n c v/F_0 > 1.
+The speed of the wall is v (1 - F/F_0), and v is the stable one where spheres touch the wall. The force F of a step has
+the dashpots' part n c times the speed of the step before, so that the speed alternates with growing amplitude where
+n c v/F_0 > 1.
 """
 
 import math
@@ -52,29 +53,26 @@ def stable_speed(m: Model, scene: Parts, triangles: Mapping[str, FloatArray], co
 def limited(
     m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, phases: Iterable["Phase"]
 ) -> Iterator["Phase"]:
-    """The phases, in which no wall that a force drives is faster than its stable speed."""
+    """The phases, in which no wall that a force drives touches spheres at more than its stable speed."""
 
     def slow(move: Move) -> Move:
         if not isinstance(move, PressMove):
             return move
-        most = float(f"{stable_speed(m, scene, triangles, count, move):.3g}")
-        return move.model_copy(update={"highest_speed": min(move.highest_speed, most)})
+        return move.limited(float(f"{stable_speed(m, scene, triangles, count, move):.3g}"))
 
     for phase in phases:
         yield replace(phase, case=phase.case.model_copy(update={"move": [slow(move) for move in phase.case.move]}))
 
 
 def slower(p: "ScenePlan") -> list[str]:
-    """A sentence for each wall that a force drives and that is slower than the case says."""
-    found = []
-    for given, phase in zip(p.scene.phase, p.phases, strict=True):
-        for one, other in zip(given.move, phase.case.move, strict=True):
-            if isinstance(one, PressMove) and isinstance(other, PressMove) and one != other:
-                found.append(
-                    f"scene.phase.{phase.name}.move: with the dashpots of [viscous] wall {one.wall} would oscillate at "
-                    f"highest_speed = {one.highest_speed:g} m/s; it has at most {other.highest_speed:g} m/s"
-                )
-    return found
+    """A sentence for each wall that a force drives and that is slower in contact than the case says."""
+    return [
+        f"scene.phase.{phase.name}.move: with the dashpots of [viscous] wall {name} would oscillate at highest_speed = "
+        f"{move.highest_speed:g} m/s; where spheres touch it, it has at most {move.speed_in_contact:g} m/s"
+        for phase in p.phases
+        for name, move in phase.moves.items()
+        if isinstance(move, PressMove) and move.speed_in_contact < move.highest_speed
+    ]
 
 
 def not_reached(p: "ScenePlan", rows: pd.DataFrame) -> list[str]:

@@ -18,7 +18,7 @@ from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import refuse
 from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words
-from .scene_walls import DeckWall, force, height, meshes, motions, plane, restart_commands, stop_commands, way
+from .scene_walls import DeckWall, force, height, meshes, motions, plane, power, restart_commands, stop_commands, way
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -104,6 +104,7 @@ class SceneDeck:
     materials: tuple[tuple[int, str, str], ...]
     pairs: tuple[tuple[int, int, str], ...]
     motions: tuple[str, ...]
+    power: str
     walls: tuple[DeckWall, ...]
     frozen: tuple[int, ...]
     phases: tuple[PhaseCommands, ...]
@@ -126,11 +127,17 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             driven=tuple((name, way(p, name)) for name in p.driven_before(run.name)),
             fills=tuple(_fills(p, run.name)),
             gates=tuple(gates[name] for name in run.added),
-            commands=tuple(motions(p, number)) if number else (),
+            commands=(*motions(p, number), *_power(p, number)) if number else (),
             ends=tuple(decks.wall_id(name) for name in run.removed),
             stop=stop_condition(p, run, partial(height, p), force, stop_commands(p, run)),
             restart_commands=restart_commands(p, number),
         )
+
+
+def _power(p: ScenePlan, number: int) -> list[str]:
+    """The command for the power of the walls from a phase on; none, if that of the phase before holds."""
+    now, before = (power(p, p.phases[k]) for k in (number, number - 1))
+    return [f"variable power equal {now}"] if "wall_power" in p.row_columns and now != before else []
 
 
 def deck(p: ScenePlan) -> SceneDeck:
@@ -144,6 +151,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
         pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),
+        power=power(p, p.phases[0]),
         walls=(*(plane(p, w) for w in p.scene.planes), *meshes(p)),
         frozen=tuple(n for n, s in enumerate(p.scene.table, 1) if s.frozen),
         phases=tuple(_phases(p)),

@@ -10,7 +10,7 @@ from ...scenes.plan import ScenePlan
 from ..restarts import later, phase_at
 from . import launcher
 from .deck import Restart, SceneDeck, deck
-from .scene_walls import DeckWall, motions_again, plane
+from .scene_walls import DeckWall, motions_again, plane, power
 
 
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
@@ -33,6 +33,7 @@ def _continued(p: ScenePlan, out: Path, step: int) -> SceneDeck:
     return replace(
         d,
         phases=phases,
+        power=power(p, p.phases[last]),
         motions=tuple(motions_again(p, last, _printed(out, step))),
         restart=Restart(f"restart.{step}.bin", tuple(_gates(p, last, ended=not inside))),
     )

@@ -2,6 +2,7 @@
 """Walls of a scene as fixes over planes and regions of LAMMPS, and the variables that move the regions."""
 
 import itertools
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -26,7 +27,7 @@ from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
 from ..host import refuse
-from ..input_script import WRITE_RESTART, bed_height
+from ..input_script import WRITE_RESTART, bed_height, press_speed
 from . import words
 
 
@@ -237,6 +238,25 @@ def motions(p: ScenePlan, number: int) -> list[str]:
     return found
 
 
+def power(p: ScenePlan, phase: Phase) -> str:
+    """Formula of the power of all that moves in a phase: forces times the speeds at their time.
+
+    Number 7 of a wall is its power by the speed of the last step; half of the change to the speed of the next is added.
+    """
+    terms = []
+    for name in p.scene.meshes:
+        id, move = wall_id(name), phase.moves.get(name)
+        if isinstance(move, PressMove):
+            terms.append(f"0.5*(f_{id}[7]+v_{id}_force*v_{id}_speed)")
+            continue
+        terms.append(f"f_{id}[7]")
+        if isinstance(move, VibrateMove):  # (sin(wt + wdt) - 2 sin(wt) + sin(wt - wdt))/2 = (cos(wdt) - 1) sin(wt)
+            change = (math.cos(move.omega * phase.time_step) - 1.0) / phase.time_step
+            force = "+".join(f"f_{id}[{k}]*{number(a * change)}" for k, a in enumerate(move.amplitude, 1) if a)
+            terms.append(f"({force})*sin({number(move.omega)}*(time-v_{id}_begin))")
+    return "+".join(terms)
+
+
 def motions_again(p: ScenePlan, number: int, values: Mapping[str, str]) -> list[str]:
     """Commands that continue the motions of a phase from the values of their variables."""
     found = []
@@ -284,10 +304,8 @@ def force(name: str, k: int) -> str:
 
 
 def _servo(id: str, move: PressMove) -> Iterator[str]:
-    """Commands that move a wall: its speed over the highest speed is the relative error of its force, at most 1."""
+    """Commands that move a wall by its force."""
     force = "+".join(f"f_{id}[{k}]*{number(u)}" for k, u in enumerate(move.direction, 1) if u)
-    error = f"v_{id}_error"
-    yield f"variable {id}_error equal 1-({force})/{number(move.force)}"
-    speed = f"({error}*(abs({error})<=1)+({error}>1)-({error}<-1))*{number(move.highest_speed)}"
-    yield f"variable {id}_speed equal {speed}"
+    yield f"variable {id}_force equal {force}"
+    yield f"variable {id}_speed equal {press_speed(f'v_{id}_force', move)}"
     yield f"fix press_{id} all controller 1 1 -1 0 0 v_{id}_speed 0 {id}_way"

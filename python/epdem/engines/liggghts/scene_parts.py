@@ -12,7 +12,6 @@ import numpy as np
 from ...base import rendering as decks
 from ...case.parts import Sphere
 from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, VibrateMove
-from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import surface_rotation
@@ -22,6 +21,7 @@ from ..input_script import (
     StopCondition,
     bed_height,
     data_text,
+    press_speed,
     stop_condition,
     taken_places,
     torque_origin,
@@ -63,8 +63,7 @@ class InsertFix:
 class SurfaceMesh:
     """A wall of triangles.
 
-    style: suffix of mesh/surface: with sums of forces, or driven by a force. keywords: rotation, wear and drive of the
-    wall. pressed_later: the force that drives the wall acts in later phases only.
+    style: suffix of mesh/surface: with sums of forces. keywords: rotation and wear of the wall.
     """
 
     id: str
@@ -72,7 +71,6 @@ class SurfaceMesh:
     type: int
     style: str
     keywords: str
-    pressed_later: bool
 
 
 @dataclass(frozen=True)
@@ -82,7 +80,7 @@ class DeckPhase:
     steps: remaining ones. gates: planes that come with the phase. bodies: file of the single spheres that come with it,
     "": none do; places: formulas of the spheres that lie in their places; driven: walls that a force drives, words of
     their ways. power: formula of the power of what moves.
-    vibrations: (variable, formula) of walls that vibrate.
+    speeds: (variable, formula) of walls that vibrate or that a force drives.
     restart_commands: where a restart file is due.
     """
 
@@ -97,7 +95,7 @@ class DeckPhase:
     places: tuple[tuple[str, str], ...]
     driven: tuple[tuple[str, list[str]], ...]
     power: str
-    vibrations: tuple[tuple[str, str], ...]
+    speeds: tuple[tuple[str, str], ...]
     stop: StopCondition | None
     restart_commands: tuple[str, ...] = WRITE_RESTART
 
@@ -173,29 +171,13 @@ def insertions(p: ScenePlan) -> tuple[InsertFix, ...]:
     return tuple(result)
 
 
-GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the relative error of the force
-
-
 def _words(*vectors: Sequence[float]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
 
 
-def _press(p: ScenePlan, name: str) -> PressMove | None:
-    moves = [phase.moves[name] for phase in p.phases if name in phase.moves]
-    presses = [move for move in moves if isinstance(move, PressMove)]
-    if any(press != presses[0] for press in presses):
-        raise CaseError(f"scene.wall.{name}: phases press with different forces or directions; press with one")
-    return next(iter(presses), None)
-
-
-def _middle(p: ScenePlan, name: str) -> list[float]:
-    """The point of a wall that a force drives, which LIGGGHTS moves along."""
-    corners = p.triangles[name].reshape(-1, 3)
-    return [0.5 * float(x) for x in corners.min(axis=0) + corners.max(axis=0)]
-
-
 def _way(p: ScenePlan, name: str) -> list[str]:
-    return [f"$(f_{decks.wall_id(name)}[{k}]-({decks.number(x)}))" for k, x in enumerate(_middle(p, name), 7)]
+    """The way of a wall, with which LIGGGHTS moves the point of its torque."""
+    return [f"$(f_{decks.wall_id(name)}[{k}]-({decks.number(x)}))" for k, x in enumerate(torque_origin(p, name), 7)]
 
 
 def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
@@ -216,13 +198,7 @@ def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
             words += f" reference_point {_words(origin)}"
         if mesh.wear:
             words += " wear finnie"
-        press = _press(p, name)
-        if press is not None:
-            style = "/stress/servo"
-            words += f" com {_words(_middle(p, name))} ctrlPV force axis {_words(press.direction)}"
-            words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
-        waits = press is not None and name not in p.phases[0].moves
-        found.append(SurfaceMesh(decks.wall_id(name), f"{name}.stl", p.wall_types[name], style, words, waits))
+        found.append(SurfaceMesh(decks.wall_id(name), f"{name}.stl", p.wall_types[name], style, words))
     return tuple(found)
 
 
@@ -235,10 +211,8 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
             axis = _words(tuple(math.copysign(1.0, move.rate) * x for x in move.axis))
             period = decks.number(2 * math.pi / abs(move.rate))
             words = f"rotate origin {_words(move.origin)} axis {axis} period {period}"
-        case VibrateMove():
+        case VibrateMove() | PressMove():
             words = "linear/variable " + " ".join(f"v_speed_{axis}_{name}" for axis in "xyz")
-        case PressMove():
-            return f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
     return f"fix move_{name} all move/mesh mesh {wall} {words}", f"unfix move_{name}"
 
 
@@ -246,8 +220,7 @@ def _height(p: ScenePlan, bed: PressedBed) -> str:
     k = bed.axis
 
     def place(name: str) -> str:
-        begin = p.triangles[name][0, 0, k]
-        reference = begin if _press(p, name) else torque_origin(p, name)[k]  # LIGGGHTS moves it with the wall
+        begin, reference = p.triangles[name][0, 0, k], torque_origin(p, name)[k]  # LIGGGHTS moves it with the wall
         return f"(f_{decks.wall_id(name)}[{7 + k}]+{decks.number(begin - reference)})"
 
     return bed_height(bed, place)
@@ -283,13 +256,13 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             resume_commands=tuple(begin for begin, _ in motions.values()),
             end_commands=(
                 *(f"unfix {decks.wall_id(name)}" for name in run.removed),
-                *(end for name, (_, end) in motions.items() if after and not (run.stops or _goes_on(name, run, after))),
+                *(end for name, (_, end) in motions.items() if after and not (run.stops or name in after.moves)),
             ),
             bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
             places=taken_places(p, run.name, "r"),
             driven=tuple((name, _way(p, name)) for name in p.driven_before(run.name)),
             power=power(p, run) if with_power else "",
-            vibrations=tuple(_vibrations(before, run, new)),
+            speeds=(*_vibrations(before, run, new), *_drives(run)),
             stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop),
         )
         found.append(part)
@@ -312,10 +285,19 @@ def _vibrations(before: Phase | None, phase: Phase, new: list[str]) -> Iterator[
                 yield f"speed_{axis}_{name}", f"{decks.number(mean * amplitude)}*{cosine}" if amplitude else "0.0"
 
 
-def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
-    """Whether a wall needs no command at the end of a phase: the motion goes on, or another `move/mesh` replaces it."""
-    one, next_one = phase.moves[name], after.moves.get(name)
-    return next_one is not None and isinstance(one, PressMove) == isinstance(next_one, PressMove)
+def _along(fix: str, press: PressMove) -> str:
+    """The force on the spheres along the motion of a wall that a force drives."""
+    return f"-({'+'.join(_times(fix, 1, press.direction))})"
+
+
+def _drives(phase: Phase) -> Iterator[tuple[str, str]]:
+    """Variables of each wall that a force drives in a phase: force along its motion [N], speeds [m/s]."""
+    for name, move in phase.moves.items():
+        if isinstance(move, PressMove):
+            yield f"force_{name}", _along(decks.wall_id(name), move)
+            yield f"speed_{name}", press_speed(f"v_force_{name}", move)
+            for axis, u in zip("xyz", move.direction, strict=True):
+                yield f"speed_{axis}_{name}", f"v_speed_{name}*{decks.number(u)}" if u else "0.0"
 
 
 def bodies_file(phase: str) -> str:
@@ -346,14 +328,6 @@ def _times(name: str, first: int, values: Sequence[float]) -> list[str]:
     return [f"f_{name}[{first + k}]*{decks.number(v)}" for k, v in enumerate(values) if v]
 
 
-def _of_servo(id: str, press: PressMove) -> str:
-    """The force on a wall that a force drives, along its direction, times its speed: see GAIN; at most the highest."""
-    force = f"({'+'.join(_times(id, 1, press.direction))})"
-    error = f"(1+{force}/{decks.number(press.force)})"
-    share = f"({error}*({error}<=1)*({error}>=-1)+({error}>1)-({error}<-1))"
-    return f"{force}*{share}*{decks.number(press.highest_speed)}"
-
-
 def power(p: ScenePlan, phase: Phase) -> str:
     """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
     terms = []
@@ -366,7 +340,8 @@ def power(p: ScenePlan, phase: Phase) -> str:
         if isinstance(move, LinearMove):
             terms += _times(id, 1, move.velocity)
         if isinstance(move, PressMove):
-            terms.append(_of_servo(id, move))
+            before = press_speed(f"({_along(f'before_{name}', move)})", move)  # the speed of the last step
+            terms.append(f"v_force_{name}*-0.5*(v_speed_{name}+{before})")
         if isinstance(move, VibrateMove):
             omega = decks.number(move.omega * phase.time_step)
             force_times_speed = "+".join(_times(id, 1, [move.omega * a for a in move.amplitude]))

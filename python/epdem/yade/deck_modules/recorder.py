@@ -101,6 +101,7 @@ class Recorder:
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
         self.means = ["wall_power"] * bool(moving) + [f"{kind}_{axis}" for kind in kinds for axis in "xyz"]
         self._sums, self._samples = np.zeros(len(self.means)), 0
+        self._before: dict[int, Any] = {}  # velocities of the last step of bodies of walls that change theirs
         self.starts = PyRunner(command="recorder.start()", iterPeriod=1, initRun=True, dead=True)  # an engine
         self.strain()  # from now on
         self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
@@ -226,6 +227,18 @@ class Recorder:
             for k in self._stops or ():
                 O.bodies[k].state.vel = (0, 0, 0)
 
+    def move(self, ids: Sequence[int], velocity: Sequence[float]) -> None:
+        """Give bodies of a wall their velocity in the coming step [m/s], which is another one in each step."""
+        for k in ids:
+            self._before[k] = 1.0 * O.bodies[k].state.vel  # a copy: YADE returns the vector itself
+            O.bodies[k].state.vel = velocity
+
+    def rest(self, ids: Sequence[int]) -> None:
+        """Bring the bodies of a wall to rest."""
+        for k in ids:
+            self._before.pop(k, None)
+            O.bodies[k].state.vel = O.bodies[k].state.angVel = (0, 0, 0)
+
     def on_walls(self) -> Any:
         """The power of moving walls [W], then force [N] and torque [N m] on each wall, in the order of the names."""
         values = []
@@ -234,6 +247,7 @@ class Recorder:
             for k in self.moving:
                 s = O.bodies[k].state
                 velocity = s.vel - 0.5 * O.dt * s.angVel.cross(s.vel)  # now; a turn's is the mean of the coming step
+                velocity = 0.5 * (velocity + self._before.get(k, velocity))
                 power -= O.forces.f(k).dot(velocity) + O.forces.t(k).dot(s.angVel)
             values.append(power)
         for _, bodies, origin in self.loads:
