@@ -94,7 +94,9 @@ def test_a_wall_that_moves_goes_on_in_runs_of_one_step(what, law, tmp_path):
 def test_a_contact_by_adhesion_goes_on_in_runs_of_one_step(law, tmp_path):
     """Contacts of two spheres and with a wall form and part in last steps of runs; no dashpot sees velocities."""
     law = f"{law} tangential history 0.3"
-    deck = spheres((0, 0, 0.010002), (0, 0.020002, 0.010002), pair=law) + f"fix floor all wall/ep zplane 0.0 NULL {law}\n"
+    deck = (
+        spheres((0, 0, 0.010002), (0, 0.020002, 0.010002), pair=law) + f"fix floor all wall/ep zplane 0.0 NULL {law}\n"
+    )
     deck += "velocity all set 0.02 0.04 -0.03\ngroup one id 1\nvelocity one set NULL 0.1 NULL\n"
     deck += "fix motion all nve/sphere\ntimestep 4e-6\n"
     _, whole = run(f"{deck}run 1200\n{DUMP}", tmp_path / "whole")
