@@ -76,6 +76,7 @@ def files(case: Path, model: str) -> dict[str, str]:
         contact_columns=scene_deck.contact_columns((), 0),
         wall_contact_columns=scene_deck.contact_columns((), 0, points=2),
         history={},
+        wall_history={},
         work_words=(),
     )
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}

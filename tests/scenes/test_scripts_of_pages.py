@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scripts that pages name, in a short form: they read decks, runs and tables as the package has them now."""
 
+import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -14,6 +16,45 @@ from epdem.engines.liggghts.engine import Liggghts
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.liggghts
+SHORT = [  # commands of pages with arguments for less
+    pytest.param("bench/adhesion.py", "--liggghts 2", id="adhesion"),
+    pytest.param("bench/million.py", "--cells 2 --steps 4 --steps-alone 2", id="million"),
+    pytest.param("bench/yade_packing.py", "40", id="yade_packing", marks=pytest.mark.yade("module")),
+]
+HERE = {"lean", "community", "laws", "lammps_speed", "scenes_speed", "yade_speed", "steps", "compaction_powder"}
+ELSEWHERE = {  # the test that runs what a script computes
+    "bulk_physics": "scenes/test_bulk_physics.py",
+    "compaction": "verification/test_compaction.py",
+    "cost": "verification/test_cost.py",
+    "decks": "decks/test_deck_page.py",
+    "equations": "physics/test_equations.py",
+    "lattices": "engines/test_lammps_lattices.py",
+    "liggghts_invariance": "engines/test_plugin_invariance.py",
+    "plastic_contacts": "verification/test_contacts.py",
+    "slip": "physics/test_slip_law.py",
+    "stability": "verification/test_stability.py",
+    "validation": "verification/test_claims.py",
+    "yield_pressure": "physics/test_yield_pressure.py",
+}
+BY_HAND = {"adhesive_powder", "benchmarks", "compaction_cost", "liggghts_speed", "reliability"}  # CONTRIBUTING.md
+
+
+def test_each_script_that_a_page_names_has_a_place_where_it_runs():
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    named = {
+        name for page in pages for name in re.findall(r"python (?:bench|docs|tests/\w+)/(\w+)\.py", page.read_text())
+    }
+    short = {Path(case.values[0]).stem for case in SHORT}
+    assert named | HERE == short | HERE | {*ELSEWHERE} | BY_HAND
+    assert all((ROOT / "tests" / test).exists() for test in ELSEWHERE.values())
+    assert all(f"`{name}.py`" in (ROOT / "CONTRIBUTING.md").read_text() for name in BY_HAND)
+
+
+@pytest.mark.parametrize(("script", "arguments"), SHORT)
+def test_a_command_of_a_page_runs(script, arguments):
+    done = subprocess.run([sys.executable, script, *arguments.split()], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert len(done.stdout.splitlines()) > 3
 
 
 @pytest.fixture
@@ -22,7 +63,7 @@ def scripts(monkeypatch):
     for folder in ("bench", "docs"):
         monkeypatch.syspath_prepend(str(ROOT / folder))
     yield
-    for name in ("lean", "community", "laws"):
+    for name in HERE:
         sys.modules.pop(name, None)
 
 
@@ -54,3 +95,46 @@ def test_the_laws_page_runs_impacts(scripts):
 
     e_n, error = laws.liggghts(laws.steel("thornton", np.array([1.0, 5.0])))
     assert e_n[0] / e_n[1] == pytest.approx(5**0.25, rel=1e-3) and error < 1e-3  # far beyond yield e_n falls as v^-1/4
+
+
+@pytest.mark.lammps
+def test_a_bed_in_lammps_is_timed(scripts, tmp_path):
+    import lammps_speed
+
+    (tmp_path / "bed.data").write_text(lammps_speed.data())
+    for name in lammps_speed.MODELS:
+        assert min(lammps_speed.times(name, 2, tmp_path, "")) > 0.0
+
+
+def test_scenes_of_both_laws_are_timed(scripts):
+    import scenes_speed
+
+    for model, environment in scenes_speed.ENVIRONMENT.items():
+        texts = scenes_speed.files(STORED / "settle" / "case.toml", model)
+        assert scenes_speed.measure(texts, model, environment)["processor"] > 0.0
+
+
+@pytest.mark.yade("module")
+def test_contacts_of_yade_are_timed(scripts, tmp_path, monkeypatch):
+    import yade_speed
+
+    monkeypatch.setattr(yade_speed, "SIDE", 3)
+    for law in (yade_speed.NATIVE, *yade_speed.CLASSES[:2]):
+        times, n = yade_speed.once(law, tmp_path, str(yade_speed.launcher.module().parent))
+        assert n == 54 and min(times) > 0.0
+
+
+def test_steps_of_the_c_interface_are_timed(scripts):
+    import steps
+
+    assert all(steps.batch(name, passes=1) > 0.0 for name in ("hertz", "meyer", "cavity"))
+
+
+def test_a_powder_is_pressed_with_each_law_of_the_page(scripts, tmp_path, monkeypatch, capsys):
+    import compaction_powder
+
+    (tmp_path / "cases").mkdir()
+    shutil.copy(STORED / "compaction/case.toml", tmp_path / "cases/compaction_powder.toml")
+    monkeypatch.setattr(compaction_powder, "HERE", tmp_path)
+    compaction_powder.main()
+    assert len(capsys.readouterr().out.splitlines()) == 1 + len(compaction_powder.LAWS)
