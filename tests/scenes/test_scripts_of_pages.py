@@ -40,10 +40,8 @@ BY_HAND = {"adhesive_powder", "benchmarks", "compaction_cost", "liggghts_speed",
 
 
 def test_each_script_that_a_page_names_has_a_place_where_it_runs():
-    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
-    named = {
-        name for page in pages for name in re.findall(r"python (?:bench|docs|tests/\w+)/(\w+)\.py", page.read_text())
-    }
+    text = "".join(page.read_text() for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+    named = {*re.findall(r"python (?:bench|docs|tests/\w+)/(\w+)\.py", text)}
     short = {Path(case.values[0]).stem for case in SHORT}
     assert named | HERE == short | HERE | {*ELSEWHERE} | BY_HAND
     assert all((ROOT / "tests" / test).exists() for test in ELSEWHERE.values())
