@@ -27,7 +27,7 @@ from scene_runs import restart_steps, run, write_case, write_deck
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.keys import keys_of
-from epdem.case.scene import SceneCase, parse
+from epdem.case.scene import SceneCase, load, parse
 from epdem.engines import SCENES, scene_engine
 from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
@@ -397,7 +397,7 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
         try:
             outcome = run(write_case(data, folder, "heap.toml"), tool, out=folder / f"heap_{tool}", fresh=True)
         except CaseError as error:
-            assert_names_who_takes_it(tool, data, error)
+            assert_names_who_takes_it(tool, folder / "heap.toml", error)
             return
         spheres = outcome.results.particles.set_index(["step", "id"]).sort_index()
         places.append(spheres[["x", "y", "z", "vx", "vy", "vz"]])
@@ -407,12 +407,13 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
     assert np.abs(places[0] - places[1]).to_numpy().max() < limit
 
 
-def assert_names_who_takes_it(tool, data, error):
-    """A refusal names each other engine whose deck the scene has, and no engine else."""
-    p, takers = plan(parse(data)), []
+def assert_names_who_takes_it(tool, path, error):
+    """A refusal names each other engine that takes the scene, and no engine else."""
+    p, takers = plan(load(path)), []
     for name in SCENES.keys() - {tool}:
         with contextlib.suppress(CaseError):
-            takers += [name] if scene_engine(name).files(p) else []
+            scene_engine(name).check(p)
+            takers.append(name)
     named = str(error).partition("--engine ")[2]
     assert set(re.findall(r"\w+", named)) - {"or"} == set(takers), error
 
@@ -422,7 +423,7 @@ def assert_runs_or_names_others(tool, chosen, folder, ranks=1):
     try:
         assert_runs(tool, chosen, folder, ranks)
     except CaseError as error:
-        assert_names_who_takes_it(tool, case_of(chosen), error)
+        assert_names_who_takes_it(tool, folder / "run.toml", error)
     except EngineError as error:  # a fill of a later phase, known in the run alone
         assert "use --engine liggghts" in str(error)
 
