@@ -291,10 +291,12 @@ template <class Law, class T = Number<Law>>
   // below the peak the overlap moves on a branch, which the sums change: the change at the middle of the step
   const T middle = min(overlap - 0.5 * closing, select(was_dented, s.reached, overlap));
   const auto yields = dented & (overlap >= s.reached);
-  T lost{};
-  if (any(!yields))
+  T lost{}, held{};
+  if (any(!yields)) {
+    held = stored(dented, peak, s.softness, b, s.overlap);
     lost = stored(was_dented, peak_before, soft_before, s.reached + v0, middle + v0) -
            stored(dented, peak, s.softness, b, middle + v);
+  }
   if (any(yields)) {
     const T delta_Y = law.elastic_overlap(R_star), b0 = select(known, s.reached + v0, T{});
     const T from = select(yields, max(T{}, b0), delta_Y), to = select(yields, b, delta_Y);
@@ -308,8 +310,9 @@ template <class Law, class T = Number<Law>>
     const T work = law.work(R_star, from, to, F0, peak.force) + U0 - U;
     const T paid = 0.5 * (F0 + peak.force) * (v - v0);
     lost = select(yields, work - paid + (s.state.unstored - s.last.unstored), lost);
+    held = select(yields, s.softness * U, held);
   }
-  return {lost, stored(dented, peak, s.softness, b, s.overlap), T{}};
+  return {lost, held, T{}};
 }
 
 }  // namespace epdem

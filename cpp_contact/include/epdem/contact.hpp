@@ -44,17 +44,22 @@ template <class Law, class T = Number<Law>>
   return law;
 }
 
-/// The law of a contact, by reference where the law does not depend on the radii of its contacts.
+/// Room for a law of its own, which few contacts need: no other contact writes here.
+template <class Law>
+union OwnLaw {
+  Law law;
+  OwnLaw() noexcept {}
+};
+
+/// The law of a contact: that of the pair, or `own` where it depends on the radii of the contact.
 template <class Law, class T = Number<Law>>
-EPDEM_INLINE std::conditional_t<is_confined<Law>, Law, const Law&> law_at(const ContactConstants<Law>& pair,
-                                                                          [[maybe_unused]] T R_star,
-                                                                          [[maybe_unused]] T radius_i) noexcept {
+EPDEM_INLINE const Law& law_at(const ContactConstants<Law>& pair, [[maybe_unused]] T R_star,
+                               [[maybe_unused]] T radius_i, [[maybe_unused]] OwnLaw<Law>& own) noexcept {
   if constexpr (is_confined<Law>) {
     const bool unlike = any(pair.law.softens()) && any(pair.bodies.strain_i != 0.5);
-    return rarely(unlike) ? confined(pair, R_star, radius_i) : pair.law;
-  } else {
-    return pair.law;
+    if (rarely(unlike)) return own.law = confined(pair, R_star, radius_i);
   }
+  return pair.law;
 }
 
 /// Observer that records nothing.
@@ -110,7 +115,8 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
                                          bool repeats = false, Observer&& observer = {},
                                          Growth&& growth = {}) noexcept {
   using T = Number<Law>;
-  const Law& law = law_at(pair, R_star, radius_i);
+  OwnLaw<Law> own;
+  const Law& law = law_at(pair, R_star, radius_i, own);
   NormalContact<Law> now{};
   now.overlap = overlap;
   [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth
@@ -134,7 +140,9 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     reached = grown.before.delta_max;
     delta_max = grown.delta_max;
     observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
-      const GrownStep<Law> copy = grown;
+      GrownStep<Law> copy;  // number by number: what is passed by its address stays in memory
+#pragma GCC unroll 64
+      for (std::size_t k = 0; k < sizeof copy / sizeof(T); ++k) put_number(copy, k, number_at<T>(grown, k));
       const auto peak = before.point;
       return grown_energies(law, R_star, peak, copy, overlap, closing);
     });
