@@ -66,7 +66,7 @@ def test_measures_are_the_first_figure_and_come_once(outcome, page):
 def test_a_page_has_no_empty_table_and_units_of_all_columns(page):
     assert "Histograms" not in page and re.search(r">Measures</h2>", page)
     assert "<tbody>\n</tbody>" not in page
-    assert "tube_force_x [N]" in page and "lid_torque_z [N m]" in page and "top [m]" in page
+    assert "tube_force_x [N]" in page and "lid_torque_z [N m]" in page and "top [mm]" in page
 
 
 @pytest.mark.liggghts

@@ -10,12 +10,12 @@ import numpy as np
 if TYPE_CHECKING:  # slow to import
     import pandas as pd
 
-READ = {  # of an SI unit, from the largest: what a reader knows, and how much of the SI unit it is
-    "Pa": (("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)),
-    "m": (("mm", 1e-3), ("um", 1e-6)),
-    "rad": (("deg", math.pi / 180.0),),
+# of an SI unit, from the largest: what a reader knows, how much of the SI unit it is, from which number on it is used
+READ = {
+    "Pa": (("GPa", 1e9, 1e10), ("MPa", 1e6, 1e5), ("kPa", 1e3, 1e2), ("Pa", 1.0, 0.0)),
+    "m": (("mm", 1e-3, 1e-4), ("um", 1e-6, 0.0)),
+    "rad": (("deg", math.pi / 180.0, 0.0),),
 }
-LEAST = 0.1  # of a unit: below it the largest number has the next smaller one
 
 
 def unit_for(unit: str, values: Any) -> tuple[str, float]:
@@ -24,8 +24,8 @@ def unit_for(unit: str, values: Any) -> tuple[str, float]:
     if known is None:
         return unit, 1.0
     size = np.abs(np.asarray(values, float))
-    largest = float(size[np.isfinite(size)].max(initial=0.0)) or 1.0
-    return next((read for read in known if largest >= LEAST * read[1]), known[-1])
+    largest = float(size[np.isfinite(size)].max(initial=0.0)) or 1.0  # zeros: mm, as most
+    return next((name, factor) for name, factor, least in known if largest >= least)
 
 
 def in_words(value: float, unit: str, digits: int = 4) -> str:

@@ -306,7 +306,9 @@ def _scale(axes: "Axes", panel: Panel, *, labels_x: bool, labels_y: bool) -> Non
     from matplotlib.ticker import NullFormatter
 
     for name, axis, labelled in (("x", panel.x, labels_x), ("y", panel.y, labels_y)):
-        setting: dict[str, Any] = {f"{name}scale": "log" if axis.log else "linear"}
+        setting: dict[str, Any] = {}
+        if axis.log:  # zeros are left out, not drawn far below
+            getattr(axes, f"set_{name}scale")("log", nonpositive="mask")
         if labelled:
             setting[f"{name}label"] = str(axis)
         if axis.low is not None or axis.high is not None:

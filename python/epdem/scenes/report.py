@@ -37,7 +37,7 @@ COLOURS = {
 }
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
-FIRST = ("phase", "asked", "reached", "error", "relative_density", "springback", "height")  # columns of stages
+FIRST = ("phase", "asked", "reached", "error", "passed", "relative_density", "springback", "height")  # of stages
 SHARES = ("error", "springback")  # in percent for readers
 CHECKED = {name: name for name in ("check", "value", "expected", "unit", "error", "tolerance")} | {"passed": "pass"}
 
@@ -295,8 +295,10 @@ def checked(table: pd.DataFrame) -> pd.DataFrame:
 def stages_shown(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     """The stages of a press with what a reader asks for first, and the units of their columns; shares in percent."""
     names = [*FIRST, *(name for name in table if name not in (*FIRST, "step", "time", "porosity"))]
-    shares = {name: 100.0 * table[name] for name in SHARES}
-    return readable.columns(table.assign(**shares)[names], units(table) | dict.fromkeys(SHARES, "%"))
+    shown = table.assign(**{name: 100.0 * table[name] for name in SHARES})
+    good = (table["error"].abs() <= checks.STAGE) & (table["relative_density"] < 1.0)
+    shown["passed"] = [bool(x) if asked else math.nan for x, asked in zip(good, table["asked"].notna(), strict=True)]
+    return readable.columns(shown[names], units(table) | dict.fromkeys(SHARES, "%"))
 
 
 def results(p: ScenePlan, tables: Tables) -> list[str]:

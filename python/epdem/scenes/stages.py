@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
+from ..base.readable import in_words
 from ..case.outputs import Stages
 from ..case.walls import PlateWall
 from .checks import work_of_walls
@@ -82,9 +83,9 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     found["asked"] = math.nan
     found.loc[of_punch, "asked"] = [math.nan if x is None else x / stages.area for x in asked]
     value, opposite = (chosen[name].to_numpy(float) / stages.area for name in ("value", "opposite"))
-    known = of_punch & np.isfinite(value)  # not where a bed without void has ended the run
-    found["pressure"] = np.where(known, value, rows[stages.pressure].reindex(ends))
-    found["opposite_pressure"] = np.where(known, opposite, rows[stages.opposite].reindex(ends))
+    known = of_punch & np.isfinite(value)  # not where a bed without void has ended the run, maybe within a row
+    found["pressure"] = np.where(known, value, rows[stages.pressure].reindex(ends, method="ffill"))
+    found["opposite_pressure"] = np.where(known, opposite, rows[stages.opposite].reindex(ends, method="ffill"))
     found["reached"] = found["pressure"].where(found["asked"].notna())
     found["error"] = found["reached"] / found["asked"] - 1.0
     spans = zip(chosen["begin"], ends, found["pressure"], strict=True)
@@ -129,7 +130,7 @@ def against_measured(p: ScenePlan, tables: Tables) -> list[str]:
     rising = (pressure > 0.0) & (pressure > np.maximum.accumulate(np.append(-math.inf, pressure[:-1])))
     there = np.interp(known.pressures, pressure[rising], density[rising], left=math.nan, right=math.nan)
     found = [
-        f"not reached at {at:.4g} Pa" if math.isnan(ours) else f"{ours - value:+.3f} at {at:.4g} Pa"
+        f"not reached at {in_words(at, 'Pa')}" if math.isnan(ours) else f"{ours - value:+.3f} at {in_words(at, 'Pa')}"
         for at, value, ours in zip(known.pressures, known.relative_densities, there, strict=True)
     ]
     return [f"relative density less the measured one: {', '.join(found)} ({known.source})"]
@@ -168,8 +169,8 @@ def warnings(p: ScenePlan, tables: Tables) -> list[str]:
     table, found = tables["stages"], []
     numbers = inertial_numbers(p, loaded(p, table))
     found += [
-        f"phase {row['phase']}: {row['reached']:.4g} Pa, {row['error']:+.2%} beside the {row['asked']:.4g} Pa asked "
-        "for; press slower near it"
+        f"phase {row['phase']}: {in_words(row['reached'], 'Pa')}, {row['error']:+.2%} beside the "
+        f"{in_words(row['asked'], 'Pa')} asked for" + "; press slower near it" * (row["error"] > 0.0)
         for row in table[table["error"].abs() > NEAR].to_dict("records")
     ]
     dense = table[table["relative_density"] > DENSE]

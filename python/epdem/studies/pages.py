@@ -4,6 +4,7 @@
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import pandas as pd
 from ..base import __version__
 from ..base.files import claim
 from ..base.paths import product_hash
+from ..base.readable import in_words
 from ..engines import texts_with_reasons
 from ..engines.citations import citations
 from ..impacts import charts
@@ -23,7 +25,7 @@ from ..impacts.prediction_report import yielding
 from ..impacts.report import against_measured, largest_errors
 from ..impacts.run import Outcome
 from ..laws.strengths import find_law
-from ..report.chart import PALETTE, Axis, Chart, Panel, Series
+from ..report.chart import PALETTE, Axis, Chart, Dash, Panel, Series
 from ..report.page import NAME, Facts, Lines, Page, Part, Rows, write
 from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
@@ -161,21 +163,21 @@ def impacts_table(outcome: Outcome) -> Rows:
 def _impact_facts(x: Experiment) -> dict[str, str]:
     facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
     units = {p.name: p.unit for p in find_law(x.law.name).parameters if p.unit != "1"}
-    facts |= {name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in x.law.shown().items()}
-    facts |= {"E*": f"{x.E_star:.6g} Pa", "R*": f"{x.R_star:.6g} m", "m*": f"{x.m_star:.6g} kg"}
+    facts |= {name: in_words(value, units.get(name, ""), 6) for name, value in x.law.shown().items()}
+    facts |= {"E*": in_words(x.E_star, "Pa", 6), "R*": in_words(x.R_star, "m", 6), "m*": f"{x.m_star:.6g} kg"}
     v_y0 = charts.first_yield(x)
     facts |= {"speed of first yield (8.84, 1.60 Y)": f"{v_y0:.4g} m/s"} if v_y0 == v_y0 else {}
     return facts | {"source": x.source}
 
 
 def _body(b: Body) -> str:
-    shape = f"sphere, R = {b.radius:.6g} m" if b.radius < float("inf") else "wall"
+    shape = f"sphere, R = {in_words(b.radius, 'm', 6)}" if b.radius < float("inf") else "wall"
     if b.rigid:
         return f"{shape}, rigid"
-    strength = "" if b.yield_stress is None else f", Y = {b.yield_stress:.4g} Pa"
-    strength += "" if b.hardness is None else f", hardness {b.hardness:.4g} Pa"
+    strength = "" if b.yield_stress is None else f", Y = {in_words(b.yield_stress, 'Pa')}"
+    strength += "" if b.hardness is None else f", hardness {in_words(b.hardness, 'Pa')}"
     strength += "" if b.yield_ratio is None else f", first yield at an overlap of {b.yield_ratio:.4g} diameters"
-    return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
+    return f"{shape}, {b.material}: E = {in_words(b.young_modulus, 'Pa')}, nu = {b.poisson_ratio:g}{strength}"
 
 
 def impacts_decks(outcome: Outcome) -> list[Lines]:
@@ -267,12 +269,13 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
 def _scene_facts(outcome: SceneOutcome) -> Facts:
     p = outcome.plan
     facts = {"kind": outcome.case.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
-    facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}
+    facts |= {"steps": str(p.steps), "smallest radius": in_words(p.smallest, "m"), "materials": ", ".join(p.types)}
     phases = [f"{x.name} up to step {x.end}" + f" (until {x.reached})" * bool(x.reached) for x in p.phases]
     return Facts("The scene", facts | {"phases": ", ".join(phases)})
 
 
 KINDS = ("last", "min", "max", "mean")  # numbers of one column of a scene
+DASHES: tuple[Dash, ...] = ("solid", "dash", "dashdot", "dot")  # a curve over another one leaves it visible
 PANEL_COLUMNS, MOST_PANELS = 3, 30  # of a chart
 
 
@@ -282,7 +285,7 @@ def write_sweep_page(result: SweepOutcome, found: Sequence[str] = ()) -> Path:
     units = table.attrs.get("units", {})
     failed = table[table["status"] == FAILED][["point", "folder", "reason"]]
     said = f"{len(sweep.points)} points on {', '.join(sweep.engines)}: {result.count(DONE)} done, {len(failed)} failed."
-    parts: list[Part] = [*(_by_key(result, units) if sweep.scene else [_by_speed(result)])]
+    parts: list[Part] = [*(_by_key(result, units) if sweep.scene else _restitution(result, units))]
     parts += [Rows("Failed points", failed)] if len(failed) else []
     rows = table.drop(columns=["folder", "reason"])
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
@@ -298,17 +301,44 @@ def _evenly(values: np.ndarray) -> np.ndarray:
     return values[np.unique(places)] if len(values) else values
 
 
-def _by_speed(result: SweepOutcome) -> Chart:
-    table, series = result.table[result.table["status"] == DONE], []
-    for k, number in enumerate(_evenly(table["point"].unique())):
-        part = table[table["point"] == number]
-        keys = ", ".join(f"{name.rsplit('.', 1)[-1]} = {v}" for name, v in result.sweep.points[number - 1].items())
+def _restitution(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
+    """e_n over each key that has several numbers, a curve for each value of the other keys; and over the speed."""
+    table = result.table[result.table["status"] == DONE]
+    keys = [name for name in result.sweep.points[0] if name in table] if len(table) else []
+    speeds = table["speed"].nunique() if len(table) else 0
+    numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1]
+    over = {key: Axis(key.rpartition(".")[2], units.get(key, "")) for key in numeric}
+    over |= {"speed": SPEED} if speeds > 1 or not numeric else {}
+    charts = [_over(table, x, axis, [*keys, "speed"], units) for x, axis in over.items()]
+    return [replace(charts[0], name="sweep"), *charts[1:]]
+
+
+def _over(table: pd.DataFrame, x: str, axis: Axis, keys: list[str], units: dict[str, str]) -> Chart:
+    """e_n over x, theory as lines and engines as points, for some of the values of the other `keys`."""
+    others = [name for name in keys if name != x and table[name].nunique() > 1]
+    lines = not others or bool((table.groupby(others)[x].nunique() > 1).any())
+    if not lines:  # random points: all of a speed, without a line
+        others = [name for name in others if name == "speed"]
+    curves = [*table.groupby(others, sort=False)] if others else [((), table)]
+    series: list[Series] = []
+    for k, n in enumerate(_evenly(np.arange(len(curves)))):
+        values, part = curves[n]
+        said = ", ".join(_said(name, value, units) for name, value in zip(others, values, strict=True))
         for i, ((engine, law), rows) in enumerate(part.groupby(["engine", "law"], sort=False)):
-            speed, label = rows["speed"].to_numpy(float), f"{engine}, {law}: {keys}"
-            series.append(Series("", speed, rows["e_n_theory"].to_numpy(float), k))
-            series.append(Series(label, speed, rows["e_n"].to_numpy(float), k, None, i))
-    alt = "Coefficient of restitution of chosen points against speed: theory as lines, engines as points."
-    return Chart("sweep", "Restitution of chosen points", alt, [Panel(SPEED, Axis("e_n"), series)])
+            rows = rows.sort_values(x)
+            at, label = rows[x].to_numpy(float), f"{engine}, {law}" + f": {said}" * bool(said)
+            if lines:
+                series.append(Series("", at, rows["e_n_theory"].to_numpy(float), k, DASHES[k % len(DASHES)]))
+            series.append(Series(label, at, rows["e_n"].to_numpy(float), k, None, k + i))
+    alt = f"Coefficient of restitution against {x}: {'theory as lines, ' * lines}engines as points."
+    if len(curves) > len(PALETTE):
+        alt += f" {len(PALETTE)} of {len(curves)} curves."
+    return Chart(f"sweep_{x}", f"Restitution against {axis.label}", alt, [Panel(axis, Axis("e_n"), series)])
+
+
+def _said(name: str, value: object, units: dict[str, str]) -> str:
+    text = in_words(value, units.get(name, "")) if isinstance(value, float) else str(value)
+    return f"{name.rpartition('.')[2]} = {text}"
 
 
 def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
@@ -357,5 +387,5 @@ def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines:
     for kind in kinds:
         k = KINDS.index(kind) if kind else 0
         y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
-        series.append(Series(kind or "check", x, y, k, "solid" if lines else None, k))
+        series.append(Series(kind or "check", x, y, k, DASHES[k] if lines else None, k))
     return series
