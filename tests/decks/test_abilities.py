@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+import psutil
 import pytest
 
 from epdem.base import processes
@@ -111,7 +112,7 @@ def test_a_missing_program_of_ranks_is_answered_with_its_own_package(name, progr
 )
 def test_ranks_that_exceed_the_free_cores_are_named(loads, ranks, job, said, monkeypatch):
     """Of four cores this process has the first and the third."""
-    monkeypatch.setattr(processes.psutil, "cpu_percent", lambda seconds, percpu: loads)
+    monkeypatch.setattr(psutil, "cpu_percent", lambda seconds, percpu: loads)
     monkeypatch.setattr(processes.os, "sched_getaffinity", lambda process: {0, 2})
     monkeypatch.delenv("SLURM_JOB_ID", raising=False)
     if job:

@@ -17,11 +17,12 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
-from typing import Any
-
-import psutil
+from typing import TYPE_CHECKING, Any
 
 from ..errors import EngineError, Stopped
+
+if TYPE_CHECKING:  # slow to import: by what looks for processes
+    import psutil
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 AGAIN = 0.01  # [s] after which a Stopped that Python has dropped is raised once more
@@ -202,6 +203,8 @@ def end_with_parent() -> None:
 
 def kill(process: subprocess.Popen[bytes]) -> None:
     """Stop a process and its session, new members too: mpirun gives each rank its own process group."""
+    import psutil
+
     for stop in (psutil.Process.terminate, psutil.Process.kill):
         asked: set[psutil.Process] = set()
         end = time.monotonic() + PATIENCE
@@ -214,8 +217,10 @@ def kill(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-def session(leader: int) -> list[psutil.Process]:
+def session(leader: int) -> "list[psutil.Process]":
     """The living processes of the session that `leader` began, the oldest first."""
+    import psutil
+
     members = []
     for member in psutil.process_iter():
         with contextlib.suppress(psutil.NoSuchProcess, ProcessLookupError):
@@ -229,6 +234,8 @@ def engines_in(folder: Path) -> list[tuple[int, Path]]:
 
     mpirun and its ranks outlive a killed run by seconds.
     """
+    import psutil
+
     found = []
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error, OSError):
@@ -246,6 +253,8 @@ def crowded(ranks: int) -> str | None:
     """
     if ranks == 1 or "SLURM_JOB_ID" in os.environ:
         return None
+    import psutil
+
     loads, cores = psutil.cpu_percent(0.2, percpu=True), os.sched_getaffinity(0)
     free = sum(1.0 - loads[core] / 100.0 for core in cores)
     if ranks <= free + 0.5:

@@ -18,11 +18,16 @@ from numpy.typing import ArrayLike
 from .numerics import Array, Real, gauss, number, poisson_ratio
 from .printed import first_yield, tresca, von_mises
 
+
 # All singularities lie at t = i z +- r: from t = -i to 1 below them. The nodes crowd towards t = 1, where the edge of
 # the contact comes near; the other half of the way, from -1 to -i, gives the complex conjugate.
-_S, _WEIGHT = gauss(96)
-_T = np.exp(-0.5j * np.pi * _S**4)
-_WEIGHT = _WEIGHT * 0.5j * np.pi * 4 * _S**3 * _T * (np.pi / 2) * (1 - _T**2)
+@functools.cache
+def _half_way() -> tuple[Any, Any]:
+    """Complex t of the nodes, and their weights."""
+    s, weight = gauss(96)
+    t = np.exp(-0.5j * np.pi * s**4)
+    return t, weight * 0.5j * np.pi * 4 * s**3 * t * (np.pi / 2) * (1 - t**2)
+
 
 Place: TypeAlias = tuple[float, float]
 Point: TypeAlias = tuple[float, tuple[float, float, float]]
@@ -47,7 +52,8 @@ def subsurface(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, mu: Real, nu: Real) 
     """
     mu, nu = number("mu", mu, low_ok=True), poisson_ratio("nu", nu)
     x, y, z = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float), number("z", z, low_ok=True))
-    X, Y, Z = x[..., None], y[..., None], z[..., None] + 1j * _T
+    t, weight = _half_way()
+    X, Y, Z = x[..., None], y[..., None], z[..., None] + 1j * t
     R = np.sqrt(X * X + Y * Y + Z * Z)
     D = R + Z
     c = 1 / (R**3 * D) + 1 / (R**2 * D**2)  # -L_xy/(xy)
@@ -55,7 +61,7 @@ def subsurface(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, mu: Real, nu: Real) 
     e, f = 1 / (R * D**2), 1 / (R**3 * D**2) + 2 / (R**2 * D**3)
 
     def total(values: Any) -> Any:  # both halves of the way are twice the real part; 1/(2 pi) of Love's formulas
-        return np.real(values @ _WEIGHT) / np.pi
+        return np.real(values @ weight) / np.pi
 
     zz, zzz = total(-Z / R**3), total(-1 / R**3 + 3 * Z * Z / R**5)
     zx, zy = total(-X / R**3), total(-Y / R**3)
