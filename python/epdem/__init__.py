@@ -6,7 +6,23 @@ from typing import Any
 
 from .base import __version__ as __version__
 
-__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
+__all__ = [
+    "Calibration",
+    "Case",
+    "Fit",
+    "Run",
+    "Scene",
+    "SceneRun",
+    "Stored",
+    "calibrate",
+    "cite",
+    "deck",
+    "predict",
+    "read",
+    "run",
+    "sweep",
+    "theory",
+]
 
 
 def __getattr__(name: str) -> Any:

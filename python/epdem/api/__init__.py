@@ -33,20 +33,33 @@ from ..scenes.plan import plan as plan_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.run import run as run_scene
 from ..scenes.warnings import planned_warnings
+from ..studies.calibrate import Calibration, from_measurement
 from ..studies.fit import Fit, Targets, fit
 from ..studies.sweep import run as study
 from ..studies.sweep.run import SweepOutcome
-from .arguments import Count, Names, Ranks, Seed, Table, take, type_error
+from .arguments import Count, Many, Names, Ranks, Seed, Table, names_arguments, take, type_error
 from .files import Case, Scene
+from .stored import Stored, read, two_lines, with_units
 
-__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
+__all__ = [
+    "Calibration",
+    "Case",
+    "Fit",
+    "Run",
+    "Scene",
+    "SceneRun",
+    "Stored",
+    "calibrate",
+    "cite",
+    "deck",
+    "predict",
+    "read",
+    "run",
+    "sweep",
+    "theory",
+]
 log = logging.getLogger("epdem")
-
-
-def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
-    marked = table.copy()
-    marked.attrs["units"] = {name: units[name] for name in map(str, marked) if name in units}
-    return marked
+MEASUREMENT = {"e_n", "speed", "measured", "uncertainty", "hv", "hb", "dent_ratio", "indentation"}
 
 
 class _Finished:
@@ -74,7 +87,7 @@ class Run(_Finished):
     @property
     def table(self) -> pd.DataFrame:
         """Measured and predicted numbers, one row for each speed, engine and law."""
-        return _units(self.outcome.results.comparison, UNITS)
+        return with_units(self.outcome.results.comparison, UNITS)
 
     def plot(self) -> Path:
         """Draw e_n.png, restitution against speed with theory; its path."""
@@ -87,6 +100,10 @@ class Run(_Finished):
         from ..studies.pages import write_impacts_page
 
         return write_impacts_page(self.outcome)
+
+    def __repr__(self) -> str:
+        title = f"impacts {self.outcome.case.name}"
+        return two_lines(title, self.passed, self.folder, {"table": self.outcome.results.comparison})
 
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
@@ -101,13 +118,17 @@ class SceneRun(_Finished):
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
         """rows, particles, contacts, energy_balance and checks, as far as the scene requests them."""
-        return {name: _units(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
+        return {name: with_units(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
         from ..studies.pages import write_scene_page
 
         return write_scene_page(self.outcome)
+
+    def __repr__(self) -> str:
+        title = f"scene {self.outcome.plan.case.name}"
+        return two_lines(title, self.passed, self.folder, self.outcome.results.tables)
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())
@@ -127,7 +148,8 @@ def run(case: Case, **options: Any) -> Run: ...
 def run(case: Scene, **options: Any) -> SceneRun: ...
 @overload
 def run(case: Path | str, **options: Any) -> Run | SceneRun: ...
-def run(  # type: ignore[misc]
+@names_arguments  # type: ignore[misc]
+def run(
     case: Case | Scene | Path | str,
     *,
     engines: str | Sequence[str] = (DEFAULT_ENGINE,),
@@ -155,15 +177,17 @@ def run(  # type: ignore[misc]
     return Run(run_impacts(case.read, engines=tools, laws=laws, progress=log.info, **options))
 
 
+@names_arguments
 def predict(case: Case | Path | str, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
     found = _case(case)
     if not isinstance(found, Case):
         raise type_error("case", found, "give a Case, which theory predicts; a scene has no prediction")
     prediction = predict_experiment(experiment(found.model, take("law", law, str | None)))
-    return _units(prediction.table(), UNITS)
+    return with_units(prediction.table(), UNITS)
 
 
+@names_arguments
 def deck(
     case: Case | Scene | Path | str,
     out: Path | str,
@@ -191,6 +215,7 @@ def deck(
         return write_deck(scene_engine(engine), p, folder, force=force)
 
 
+@names_arguments
 def cite(
     case: Case | Scene | Path | str,
     *,
@@ -209,6 +234,7 @@ def cite(
         return citations(case.model, laws or [case.model.law.name], tools)
 
 
+@names_arguments
 def sweep(
     case: Case | Scene | Path | str,
     settings: study.Settings,
@@ -242,15 +268,35 @@ def sweep(
     return study.run(planned, folder, jobs=processes, retry_failed=retry_failed, report=_report)
 
 
-def calibrate(scene: Scene | Path | str, targets: Targets, free: Mapping[str, str], **options: Any) -> Fit:
-    """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit`.
+@overload
+def calibrate(case: Scene | Path | str, targets: Targets, free: Mapping[str, str], **options: Any) -> Fit: ...
+@overload
+def calibrate(case: Case | Path | str, **measurement: Any) -> Calibration: ...
+@names_arguments
+def calibrate(
+    case: Case | Scene | Path | str,
+    targets: Targets | None = None,
+    free: Mapping[str, str] | None = None,
+    **options: Any,
+) -> Fit | Calibration:
+    """Find the strength of the law of a Case from a measurement, or one to three keys of a Scene from its results.
 
-    options: out, engine, ranks, tolerance, jobs, force. `scene.replace(found.values)` is the scene that was found.
-    Raises CaseError, EngineError.
+    Of a Case, one measurement: e_n with speed (m/s, a text with a unit; lists of both for a law that hardens),
+    measured=True (those of the case), hv or hb (with dent_ratio), indentation (a file of depth and force);
+    uncertainty: of each of several e_n. Of a Scene: numbers of its results with the values `targets` and ranges of the
+    keys that are `free`; out, engine, ranks, tolerance, jobs, force. `scene.replace(found.values)` is the scene that
+    was found. Raises CaseError, EngineError.
     """
-    found = _case(scene)
-    if not isinstance(found, Scene):
-        raise type_error("scene", found, "give a Scene; `epdem calibrate` finds the strength of a law from impacts")
+    found = _case(case)
+    if isinstance(found, Case):
+        if targets is not None or free is not None:
+            raise type_error("case", found, "give a Scene for targets and free, or a measurement, as e_n and speed")
+        if unknown := sorted(options.keys() - MEASUREMENT):
+            raise CaseError(f"{unknown[0]}: no measurement of a Case; there are {', '.join(sorted(MEASUREMENT))}")
+        e_n, speed = ([] if (v := options.pop(n, None)) is None else take(n, v, Many) for n in ("e_n", "speed"))
+        if (curve := options.get("indentation")) is not None:
+            options["indentation"] = take("indentation", curve, Path)
+        return from_measurement(found.read, e_n=[float(x) for x in e_n], speed=speed, **options)
     goals = take("targets", targets, Table)
     ranges = take("free", free, Table)
     return fit(found.read, goals, ranges, **({"report": _report} | options))

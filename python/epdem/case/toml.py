@@ -89,6 +89,9 @@ class LoadedCase(NamedTuple):
     text: str
     place: object
 
+    def __str__(self) -> str:
+        return str(self.place)
+
 
 def files_in(data: Any) -> Iterator[tuple[Any, Any]]:
     """(table, key) of each name of a file in the tables of a case, or in a point of a sweep, whose keys have dots."""

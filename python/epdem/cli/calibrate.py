@@ -2,16 +2,12 @@
 """The command `epdem calibrate`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from ..base.terminal import bar, warned
-from ..errors import CaseError
 from .options import AsJson, CasePath, Force, Out, answer, refuse_options
-
-if TYPE_CHECKING:
-    from ..studies.calibrate import Calibration
 
 
 def calibrate(
@@ -58,18 +54,19 @@ def calibrate(
 
     A fit of a scene leaves report.html in its folder.
     """
-    impacts = {"e_n": e_n, "speed": speed, "measured": measured, "uncertainty": uncertainty}
-    hardness = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
-    curve = {"indentation": indentation}
+    impacts: dict[str, Any] = {"e_n": e_n, "speed": speed, "measured": measured, "uncertainty": uncertainty}
+    hardness: dict[str, Any] = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
+    curve: dict[str, Any] = {"indentation": indentation}
     of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs, "out": out}
     if target or free:
         refuse_options(case, "it does not go with --target and --free", **impacts, **hardness, **curve)
         given = {k: v for k, v in (of_scene | {"force": force}).items() if v is not None}
         raise _of_scene(case, target or [], free or [], given, as_json)
     refuse_options(case, "it goes with --target and --free", **of_scene, force=force)
-    from ..studies.calibrate import summary
+    from ..studies.calibrate import from_measurement, summary
 
-    found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, hardness, indentation)
+    impacts |= {"e_n": e_n or [], "speed": speed or []}
+    found = from_measurement(case, **impacts, **hardness, **curve)
     raise answer(vars(found), [*summary(found), *warned(found.warnings)], as_json)
 
 
@@ -90,39 +87,3 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
     page = write_sweep_page(found.sweep, [*said, counts])
     known = {name: value for name, value in vars(found).items() if name != "sweep"}
     return answer(known, [*said, f"{counts}; see {page}"], as_json)
-
-
-def _from_measurement(
-    case: Path,
-    e_n: list[float],
-    speed: list[str],
-    measured: bool,
-    uncertainty: float | None,
-    hardness: dict[str, float | None],
-    indentation: Path | None,
-) -> "Calibration":
-    from ..case.units import read_number
-    from ..studies import calibrate as c
-
-    hv, hb, dent_ratio = hardness.values()
-    if (bool(e_n) + measured + (hv is not None or hb is not None) + (indentation is not None)) != 1:
-        raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, --hb, or --indentation")
-    if hb is None:
-        refuse_options(case, "it belongs to --hb", dent_ratio=dent_ratio)
-    if not e_n:
-        refuse_options(case, "it belongs to --e-n", speed=speed)
-    if not (measured or e_n):
-        refuse_options(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
-        if indentation is not None:
-            return c.from_indentation(case, indentation)
-        test = c.hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
-    if len(e_n) != len(speed):
-        raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-    points = [(read_number("--speed", v, "m/s"), e) for v, e in zip(speed, e_n, strict=True)]
-    if measured:
-        points = c.measured_restitutions(case)
-    if len(points) == 1:
-        refuse_options(case, "it belongs to several e_n", uncertainty=uncertainty)
-        return c.from_restitution(case, points[0][1], points[0][0])
-    return c.from_restitutions(case, points, uncertainty)

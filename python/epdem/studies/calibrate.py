@@ -11,6 +11,7 @@ import numpy as np
 from ..case.impact import HIGHEST_E_N, Case, load
 from ..case.law import law_numbers
 from ..case.sizes import csv_table, number_in
+from ..case.toml import LoadedCase
 from ..case.units import read_number
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, at_rate, bodies, pair_of
@@ -125,8 +126,12 @@ class _Uncalibrated:
         return Calibration(self.law.name, self.parameter, strength, stress, yield_speed, e_n, speed, source)
 
 
-def _uncalibrated(path: Path) -> _Uncalibrated:
-    case = load(path)
+def _model(case: Path | LoadedCase) -> Case:
+    return case.model if isinstance(case, LoadedCase) else load(case)
+
+
+def _uncalibrated(path: Path | LoadedCase) -> _Uncalibrated:
+    case = _model(path)
     parameter = find_law(case.law.name).strength
     if parameter is None:
         raise CaseError(f"{path}: law {case.law.name} never yields; it has nothing to calibrate")
@@ -134,14 +139,14 @@ def _uncalibrated(path: Path) -> _Uncalibrated:
     return _Uncalibrated(case, law_numbers(case.law.name, given), parameter)
 
 
-def _check(path: Path, e_n: float, speed: float) -> None:
+def _check(path: Path | LoadedCase, e_n: float, speed: float) -> None:
     if not 0.0 < e_n <= HIGHEST_E_N:
         raise CaseError(f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, {HIGHEST_E_N:g}]; percent?")
     if not (math.isfinite(speed) and speed > 0):
         raise CaseError(f"--speed {speed:g} m/s, must be > 0")
 
 
-def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
+def from_restitution(path: Path | LoadedCase, e_n: float, speed: float) -> Calibration:
     """The strength with which the case's impact at `speed` [m/s] has the measured e_n. Raises CaseError.
 
     The case gives bodies, elastic constants and law; its own strength and speeds play no part.
@@ -166,7 +171,7 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
     return replace(found, warnings=uncalibrated.far_from_material(strength))
 
 
-def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
+def from_hardness(path: Path | LoadedCase, test: Indentation, source: str) -> Calibration:
     """The strength from a hardness test of the softer body of the case. Raises CaseError."""
     uncalibrated = _uncalibrated(path)
     return uncalibrated.result(
@@ -177,7 +182,7 @@ def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
 CURVE = {"depth": "m", "force": "N"}  # columns of an indentation curve
 
 
-def from_indentation(path: Path, curve: Path) -> Calibration:
+def from_indentation(path: Path | LoadedCase, curve: Path) -> Calibration:
     """The strength with which the contact of the case follows a measured curve of force and depth, by least squares.
 
     The depth is the overlap of the contact of body and target; points behind the largest force, the unloading, play no
@@ -234,7 +239,7 @@ def _loading(curve: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def from_restitutions(
-    path: Path, measured: Sequence[tuple[float, float]], uncertainty: float | None = None
+    path: Path | LoadedCase, measured: Sequence[tuple[float, float]], uncertainty: float | None = None
 ) -> Calibration:
     """Strength and hardening exponent by least squares of e_n: (speed [m/s], e_n) of two or more impacts of the case.
 
@@ -310,6 +315,47 @@ def from_restitutions(
     )
 
 
+def from_measurement(
+    case: Path | LoadedCase,
+    *,
+    e_n: Sequence[float] = (),
+    speed: Sequence[str | float] = (),
+    measured: bool = False,
+    uncertainty: float | None = None,
+    hv: float | None = None,
+    hb: float | None = None,
+    dent_ratio: float | None = None,
+    indentation: Path | None = None,
+) -> Calibration:
+    """The calibration from the one measurement that is given, as in `epdem calibrate`. Raises CaseError."""
+
+    def refuse(owner: str, **given: object) -> None:
+        for name, value in given.items():
+            if value is not None and value != []:
+                raise CaseError(f"{case}: --{name.replace('_', '-')}: it belongs to {owner}; leave it out")
+
+    if (bool(e_n) + measured + (hv is not None or hb is not None) + (indentation is not None)) != 1:
+        raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, --hb, or --indentation")
+    if hb is None:
+        refuse("--hb", dent_ratio=dent_ratio)
+    if not e_n:
+        refuse("--e-n", speed=list(speed))
+    if not (measured or e_n):
+        refuse("--e-n and --measured", uncertainty=uncertainty)
+        if indentation is not None:
+            return from_indentation(case, indentation)
+        test = hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        return from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+    if len(e_n) != len(speed):
+        raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
+    speeds = [read_number("--speed", v, "m/s") if isinstance(v, str) else float(v) for v in speed]
+    points = measured_restitutions(case) if measured else list(zip(speeds, e_n, strict=True))
+    if len(points) == 1:
+        refuse("several e_n", uncertainty=uncertainty)
+        return from_restitution(case, points[0][1], points[0][0])
+    return from_restitutions(case, points, uncertainty)
+
+
 def summary(c: Calibration) -> list[str]:
     """The strength with its interval, and the lines of the case file."""
     lines = [f'{c.parameter} = "{c.value / 1e6:.6g} MPa"']
@@ -334,9 +380,9 @@ def summary(c: Calibration) -> list[str]:
     ]
 
 
-def measured_restitutions(path: Path) -> list[tuple[float, float]]:
+def measured_restitutions(path: Path | LoadedCase) -> list[tuple[float, float]]:
     """The (speed [m/s], e_n) of [measured] of a case. Raises CaseError."""
-    curve = load(path).measured
+    curve = _model(path).measured
     if curve is None:
         raise CaseError(f"{path}: it has no [measured] speeds and e_n; add them, or give --e-n with --speed")
     return list(zip(curve.speeds, curve.e_n, strict=True))

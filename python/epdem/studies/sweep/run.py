@@ -152,6 +152,17 @@ class SweepOutcome:
         total = len(self.sweep.points)
         return [f"{len(all_)} of {total} points, here point {first}: {said}" for said, first, all_ in found.values()]
 
+    def report(self) -> Path:
+        """Write report.html, one page with figures and the table, into the folder; its path."""
+        from ..pages import write_sweep_page
+
+        return write_sweep_page(self)
+
+    def __repr__(self) -> str:
+        states = ", ".join(f"{n} {state}" for state in store.STATES if (n := self.count(state)))
+        title = f"sweep {self.sweep.name}: {states} of {len(self.sweep.points)} points"
+        return f"{title}\n{self.folder}: table ({len(self.table)} rows)"
+
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
 
