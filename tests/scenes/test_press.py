@@ -127,6 +127,13 @@ def test_a_softened_press_reaches_the_densities_of_the_press(pressed):
     assert np.abs(difference).max() < 0.02
 
 
+def off(points, x, y):
+    """How far the farthest of `points` is from the nearest of (x, y), over the largest of each."""
+    curve = np.column_stack([x, y])
+    apart = np.abs(points.to_numpy()[:, None] - curve[None]) / np.abs(curve).max(axis=0)
+    return apart.max(axis=2).min(axis=1).max()
+
+
 @pytest.mark.liggghts
 def test_the_figures_have_the_numbers_of_rows_stages_and_sides(pressed):
     found, tables = figures(pressed), pressed.results.tables
@@ -138,10 +145,9 @@ def test_the_figures_have_the_numbers_of_rows_stages_and_sides(pressed):
     ]
     ends, rows = tables["stages"].set_index("phase"), pressed.results.rows.set_index("step")
     punch, *marks = found["Force over displacement"].series
-    at = rows.iloc[-len(punch.y) :]
-    assert np.asarray(punch.y) == pytest.approx(at["pressure"].to_numpy() * SIDE**2)
-    assert np.asarray(punch.x) == pytest.approx(HEIGHT - at["punch_z"].to_numpy(), rel=1e-9)
-    assert rows["pressure"].iloc[: -len(punch.y)].max() < 0.01 * PRESSURES[0], "curves begin where the punch bears"
+    seen = rows.iloc[int(np.argmax(rows["pressure"] > 1e-3 * rows["pressure"].max())) - 1 :]  # the punch bears
+    assert off(seen[["punch_z", "pressure"]] * [-1, SIDE**2] + [HEIGHT, 0], punch.x, punch.y) < 1e-6
+    assert len(punch.y) == len(seen) + len(ends), "the curve goes through the ends of phases"
     for mark, name in zip(marks, ("stage1", "stage2"), strict=True):
         assert mark.name.startswith(f"{name}, ") and mark.y[0] == pytest.approx(ends["reached"][name] * SIDE**2)
         assert mark.x[0] == pytest.approx(HEIGHT - ends["height"][name])
@@ -149,12 +155,14 @@ def test_the_figures_have_the_numbers_of_rows_stages_and_sides(pressed):
     assert density.x.log and np.asarray(density.series[1].y) == pytest.approx(borne["relative_density"].to_numpy())
     for curve, name in zip(found["Springback"].series, ("release1", "release2"), strict=True):
         before = ends.index[ends.index.get_loc(name) - 1]
-        way = np.arange(1, len(curve.y) + 1) - 0.5  # the middles of rows, from the height of the end of loading
+        way = np.arange(1, len(curve.y) - 1) - 0.5  # the middles of rows, from the height of the end of loading
         strain = 100 * 0.5 * way * pressed.plan.every * pressed.plan.time_step / ends["height"][before]
         assert curve.name == f"{name}, {100 * ends['springback'][name]:.3g} %"
-        assert np.asarray(curve.y)[:-1] == pytest.approx(strain[:-1], rel=1e-6)
-        assert strain[-2] < curve.y[-1] <= strain[-1], "the punch rests within the last row"
-        assert np.asarray(curve.x) == pytest.approx(rows["pressure"].loc[: ends["step"][name]].to_numpy()[-len(way) :])
+        assert (curve.y[0], curve.y[-1]) == pytest.approx((0.0, 100 * ends["springback"][name]))
+        assert np.asarray(curve.y)[1:-2] == pytest.approx(strain[:-1], rel=1e-6)
+        assert strain[-2] < curve.y[-2] <= strain[-1], "the punch rests within the last row"
+        borne = rows["pressure"].loc[: ends["step"][name]].to_numpy()[-len(way) :]
+        assert np.asarray(curve.x)[1:-1] == pytest.approx(borne)
     for curve, name in zip(found["Pressure on the sides by height"].series, ("stage1", "stage2"), strict=True):
         slices = np.diff(curve.y)[::2]
         assert len(slices) > 2 and sum(slices) == pytest.approx(ends["height"][name])
@@ -209,9 +217,9 @@ def test_page_terminal_figures_and_csv_have_the_same_numbers(pressed):
     rows = pd.read_csv(folder / "results.csv")
     density = pd.read_csv(folder / "densification.csv")
     punch = density[density["series"] == "punch"]
-    known = rows[rows["pressure"] >= 0.999e6 * punch["x"].min()]
-    assert 1e6 * punch["x"].to_numpy() == pytest.approx(known["pressure"].to_numpy(), rel=1e-6)
-    assert punch["y"].to_numpy() == pytest.approx(known["relative_density"].to_numpy(), rel=1e-6)
+    known = rows[rows["pressure"] >= 1e6 * punch["x"].min()]
+    assert len(known) > 100
+    assert off(known[["pressure", "relative_density"]], 1e6 * punch["x"], punch["y"]) < 1e-6
     said = re.search(r"Relative density: ([.\d]+) at ([.\d]+) MPa, .*? Springback: ([.\d]+), ([.\d]+) %", page)
     back = ends["springback"].dropna().to_list()
     assert [float(x) for x in said.groups()] == pytest.approx(

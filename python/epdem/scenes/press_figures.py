@@ -21,19 +21,24 @@ LOWEST = 1e-3  # of the largest pressure: where curves begin
 SLICES = 8  # of the bed, at most
 
 
-def _pressure(p: ScenePlan, tables: Tables) -> np.ndarray:
-    return np.asarray(tables["rows"][p.scene.stages.pressure])  # type: ignore[union-attr]
+def _curve(p: ScenePlan, tables: Tables) -> pd.DataFrame:
+    """time, pressure, height and relative density of the rows, in their middle, and of the ends of phases."""
+    rows, names = tables["rows"], ["time", "pressure", "height", "relative_density"]
+    assert p.scene.stages is not None
+    middle = p.time_at((rows["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
+    rows = rows.assign(time=middle, pressure=rows[p.scene.stages.pressure])
+    return pd.concat([rows[names], tables["stages"][names]]).sort_values("time", kind="stable", ignore_index=True)
 
 
 def force(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Force on the punch over the way by which the plates approach, and the ends of the stages."""
-    declared, rows, ends = p.scene.stages, tables["rows"], tables["stages"]
+    declared, curve, ends = p.scene.stages, _curve(p, tables), tables["stages"]
     assert declared is not None
     start = float(stages.heights(p, declared, np.zeros(1))[0])
-    pressure = _pressure(p, tables)
-    met = max(0, int(np.argmax(pressure > LOWEST * pressure.max())) - 1)
-    way = start - rows["height"].to_numpy()
-    series = [Series("punch", way[met:], declared.area * pressure[met:], GREY)]
+    borne = curve["pressure"] > LOWEST * curve["pressure"].max()
+    curve = curve.iloc[max(0, int(borne.to_numpy().argmax()) - 1) :]
+    way, load = start - curve["height"].to_numpy(), declared.area * curve["pressure"].to_numpy()
+    series = [Series("punch", way, load, GREY)]
     for k, stage in enumerate(ends[ends["asked"].notna()].to_dict("records")):
         named = f"{stage['phase']}, {in_words(stage['reached'], 'Pa', 3)}"
         at, load = start - stage["height"], declared.area * stage["reached"]
@@ -43,14 +48,13 @@ def force(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 def densification(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Relative density against pressure, and the ends of the phases."""
-    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
-    ends, known = tables["stages"], p.case.measured
-    low = LOWEST * float(max(pressure.max(), ends["pressure"].max()))
+    curve, ends, known = _curve(p, tables), tables["stages"], p.case.measured
+    low = LOWEST * float(curve["pressure"].max())
     if low <= 0.0:
         return []
-    seen, ends = pressure >= low, ends[ends["pressure"] >= low]
+    curve, ends = curve[curve["pressure"] >= low], ends[ends["pressure"] >= low]
     series = [
-        Series("punch", pressure[seen], density[seen], 0),
+        Series("punch", curve["pressure"].to_numpy(), curve["relative_density"].to_numpy(), 0),
         Series("ends of phases", ends["pressure"].to_numpy(), ends["relative_density"].to_numpy(), INK, None, 0),
     ]
     if known:
@@ -72,7 +76,7 @@ def heckel(p: ScenePlan, tables: Tables) -> list[Panel]:
     """
     if (ends := _fitted(p, tables)) is None:
         return []
-    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
+    pressure, density = (_curve(p, tables)[name].to_numpy() for name in ("pressure", "relative_density"))
     rising = (pressure >= np.maximum.accumulate(pressure)) & (pressure > LOWEST * pressure.max()) & (density < 1.0)
     x, y = ends["pressure"].to_numpy(), -np.log(ends["porosity"].to_numpy())
     slope, begin = np.polyfit(x, y, 1)
@@ -91,7 +95,7 @@ def kawakita(p: ScenePlan, tables: Tables) -> list[Panel]:
 
     Kawakita and Luedde 1971, Powder Technol. 4, 61.
     """
-    pressure, density = _pressure(p, tables), tables["rows"]["relative_density"].to_numpy()
+    pressure, density = (_curve(p, tables)[name].to_numpy() for name in ("pressure", "relative_density"))
     ends = _fitted(p, tables)
     if ends is None or not (pressure > 0.0).any():
         return []
@@ -106,14 +110,14 @@ def kawakita(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 def springback(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Axial strain since the end of loading against pressure, a curve for each release, named by its end."""
-    rows, ends, pressure = tables["rows"], tables["stages"], _pressure(p, tables)
+    curve, ends = _curve(p, tables), tables["stages"]
     loaded = ends["height"].where(ends["springback"].isna()).ffill()
     series: list[Series] = []
     for n in np.flatnonzero(ends["springback"].notna()):
-        during = rows["step"].between(ends["step"][n - 1], ends["step"][n], inclusive="right")
-        strain = 100.0 * (rows["height"][during] / loaded[n] - 1.0)
+        during = curve[curve["time"].between(ends["time"][n - 1], ends["time"][n])]
+        strain = 100.0 * (during["height"] / loaded[n] - 1.0)
         name, colour = f"{ends['phase'][n]}, {100.0 * ends['springback'][n]:.3g} %", len(series) % len(PALETTE)
-        series.append(Series(name, pressure[during], strain.to_numpy(), colour))
+        series.append(Series(name, during["pressure"].to_numpy(), strain.to_numpy(), colour))
     return [Panel(PRESSURE, Axis("springback", "%"), series)] if series else []
 
 
