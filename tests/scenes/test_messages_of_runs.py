@@ -211,7 +211,7 @@ def test_decks_and_studies(tmp_path):
     deck.write_text("run 1\nrun 2\n")
     with says("2 lines start with 'run', expected 1"):
         variants.edit(deck, variants.Edit("run", ()))
-    with says("deck cannot be made into another set-up"):
+    with says("deck cannot be made into this set-up; take liggghts or yade", CaseError):
         variants.edits(Bench(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
         own_decks.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)

@@ -187,6 +187,12 @@ def test_a_set_up_that_an_engine_cannot_be_given_has_not_failed(error, status, t
     assert (found["status"], found["reason"]) == (status, "no such wall")
 
 
+@pytest.mark.lammps
+def test_a_set_up_that_lammps_cannot_be_given_has_not_failed(tmp_path):
+    found = suite.verdict(BY_NAME["two_walls_1em1"], "thornton", Bench(engine("lammps"), tmp_path))
+    assert found["status"] == "not representable" and "cannot be made into this set-up" in found["reason"]
+
+
 @pytest.mark.liggghts
 def test_liggghts_passes_extreme_cases_and_says_what_it_cannot_represent(tmp_path):
     bench, measures = Bench(engine("liggghts"), tmp_path), partial(impact, coarse=(1.0, 1.5))

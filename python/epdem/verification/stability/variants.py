@@ -8,7 +8,7 @@ import numpy as np
 
 from ...engines.liggghts.engine import Liggghts
 from ...engines.yade.engine import Yade
-from ...errors import EngineError
+from ...errors import CaseError, EngineError
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
 from .bench import Bench
@@ -67,12 +67,12 @@ class YadeEdits:
 
 
 def edits(bench: Bench) -> LiggghtsEdits | YadeEdits:
-    """The edits of an engine's deck. Raises EngineError for an engine without."""
+    """The edits of an engine's deck. Raises CaseError for an engine without."""
     if isinstance(bench.tool, Liggghts):
         return LiggghtsEdits()
     if isinstance(bench.tool, Yade):
         return YadeEdits()
-    raise EngineError(f"engine {bench.name}: its deck cannot be made into another set-up")
+    raise CaseError(f"engine {bench.name}: its deck cannot be made into this set-up; take liggghts or yade")
 
 
 def edit(deck: Path, change: Edit) -> str:
