@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from test_pages import blocks, play
 
 from epdem import Case, calibrate, deck, predict, read, run, sweep
 from epdem.errors import CaseError
@@ -86,6 +87,13 @@ def curve(case):
     for depth in np.linspace(0.2, 60, 100) * 1e-6:
         hertz = 4 / 3 * E * np.sqrt(R) * min(depth, start) ** 1.5
         yield 1e6 * depth, hertz + np.pi * p * R * max(depth - start, 0.0)
+
+
+def test_the_blocks_of_the_page_run(tmp_path):
+    found = blocks("studies")
+    first = next(n for n, (_, text) in enumerate(found) if "from epdem import Case, predict, run, sweep" in text)
+    assert "from epdem import calibrate, read" in found[first + 1][1]
+    play(found[first : first + 2], tmp_path)
 
 
 @pytest.mark.parametrize(
