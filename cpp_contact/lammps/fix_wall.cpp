@@ -248,15 +248,12 @@ void FixWall::finish(int n) {
     const int i = b.i[k];
     double *const f = atom->f[i], *const torque = atom->torque[i];
     const double* const x = atom->x[i];
-    const double distance = atom->radius[i] - b.overlap.a[k];
-    const double arm = distance > 0.0 ? 1.0 + 0.5 * b.overlap.a[k] / distance : 1.0;
-    const auto point = [&](int axis) { return x[axis] - arm * b.from_wall[axis].a[k]; };
     for (int axis = 0; axis < 3; ++axis) {
       f[axis] += b.force[axis].a[k];
       torque[axis] += b.torque_i[axis].a[k];
       sum_[axis] += b.force[axis].a[k];
       const int second = (axis + 1) % 3, third = (axis + 2) % 3;
-      sum_[3 + axis] += point(second) * b.force[third].a[k] - point(third) * b.force[second].a[k];
+      sum_[3 + axis] += x[second] * b.force[third].a[k] - x[third] * b.force[second].a[k] + b.torque_i[axis].a[k];
       sum_[6] += b.force[axis].a[k] * b.wall_v[axis].a[k];
     }
   }

@@ -27,8 +27,8 @@ class FixWall : public LAMMPS_NS::Fix {
   void post_neighbor() override { candidates_valid_ = false; }
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
-  /// Force of the wall on all spheres, torque about the origin of these forces in the middle of each overlap,
-  /// power of the wall.
+  /// Force of the wall on all spheres, their torque about the origin with that of rolling friction, power of the wall
+  /// without it.
   double compute_vector(int axis) override;
 
   void grow_arrays(int atoms) override;

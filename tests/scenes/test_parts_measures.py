@@ -146,6 +146,26 @@ def test_spheres_that_have_rolled_away_do_not_change_the_angle_of_repose(strays)
     assert math.degrees(found) == pytest.approx(25.0, abs=0.7)
 
 
+def test_an_angle_of_repose_comes_with_its_rings_and_in_degrees_for_readers():
+    """A cone of 25 degrees of spheres on a line, of which 10 of 12 rings count, and the same with a gap.
+
+    Without those from 0.2 to 0.405, 95 % of the spheres end at 0.96: the rings of a width of 0.08 from 0.24 to 0.4 are
+    empty.
+    """
+    way = np.repeat(np.linspace(0.0, 1.0, 2400), 2)
+    places = np.stack([way, 0 * way, (1.0 - way) * math.tan(math.radians(25.0))], axis=1)
+    kept = {0: way >= 0.0, 10: (way < 0.2) | (way > 0.405)}
+    frames = [spheres(step, places[keep], 1e-6) for step, keep in kept.items()]
+    p = planned({"kind": "repose", "name": "angle", "over": "distance"})
+    tables = {"particles": pd.concat(frames), "rows": pd.DataFrame({"step": [0, 10], "particles": 1})}
+    tables["measures"] = measures.curves(p, tables)
+    assert np.degrees(tables["measures"]["angle"].to_numpy()) == pytest.approx(25.0, abs=0.01)
+    assert tables["measures"]["angle_rings"].to_list() == [10, 8]
+    shown = report.measured(p, tables).iloc[0]
+    assert shown["kind"] == "repose of 8 rings" and shown["unit"] == "deg"
+    assert float(shown["value"]) == pytest.approx(25.0, abs=0.01)
+
+
 def test_height_and_centre_of_mass_are_those_of_the_masses():
     column = np.array([[1e-3, 0, z * 1e-3] for z in range(1, 21)])
     assert curve({"kind": "height", "share": 0.5}, spheres(0, column)) == [pytest.approx(10e-3)]

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "wall.hpp"
 
+#include <mesh_module_stress.h>
+
 #include <algorithm>
+#include <string>
 
 #include "epdem/kinematics.hpp"
 #include "triangles.hpp"
@@ -27,6 +30,13 @@ void WallLoop::open(FixWallGran& wall, const Plan& plan) {
   plan_ = &plan;
   pass_ = pass_of(*atom, plan, update->dt);
   pass_.sums = plan.growth ? plan.growth->of_all() : nullptr;
+  couples_ = nullptr;
+  if (!plan.settings.rolling) return;
+  const std::string name = std::string("couple_") + wall.id;
+  if (auto* const kept = modify->find_fix_property(name.c_str(), "property/atom", "vector", 3, 0, "epdem", false)) {
+    couples_ = kept->array_atom;
+    std::fill_n(couples_[0], 3L * atom->nlocal, 0.0);
+  }
 }
 
 void WallLoop::close() {
@@ -94,12 +104,29 @@ void WallLoop::scatter() {
       }
       mesh_[k]->add_particle_contribution(i, share, to_wall, triangle_[k], v);
     }
+    if (plan_->settings.rolling) add_couple(k);
     if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k]);
     if (!plan_->tally) continue;
     const double stored = b.stored_energy.a[k];
     plan_->tally->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);
     if (plan_->adds_friction)
       plan_->tally->add_friction(true, b.friction_work.a[k], b.spring_energy.a[k], {i, i, atom->nlocal});
+  }
+}
+
+/// The torque of rolling friction is no moment of a force: LIGGGHTS's sums over walls lack it.
+void WallLoop::add_couple(int k) {
+  const Block& b = *block_;
+  const auto part = [k](const auto& lines) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
+  const Vec<double> from_wall = part(b.from_wall);
+  const Vec<double> arm = to_middle(b.overlap.a[k], from_wall) - from_wall;
+  const Vec<double> couple = part(b.torque_i) - cross(arm, part(b.force));
+  double none[3] = {}, on_wall[3] = {-couple.x, -couple.y, -couple.z};
+  if (mesh_[k]) {
+    if (auto* const sums = dynamic_cast<LAMMPS_NS::MeshModuleStress*>(mesh_[k]->get_module("stress")))
+      sums->add_global_external_contribution(none, on_wall);
+  } else if (couples_) {
+    for (int x = 0; x < 3; ++x) couples_[b.i[k]][x] -= on_wall[x];
   }
 }
 

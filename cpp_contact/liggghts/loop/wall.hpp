@@ -51,6 +51,7 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   /// All that is noted.
   void compute();
   void scatter();
+  void add_couple(int k);
 
   const std::unique_ptr<Block> block_;
   LAMMPS_NS::FixMeshSurface* mesh_[block_size];
@@ -58,6 +59,7 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   Pass pass_{};
   const Plan* plan_ = nullptr;
   LAMMPS_NS::FixWallGran* wall_ = nullptr;
+  double** couples_ = nullptr;  // of rolling friction on each sphere, which a deck asks for by a fix
   int n_ = 0;
 };
 

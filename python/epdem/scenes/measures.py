@@ -106,14 +106,14 @@ def _height(frame: pd.DataFrame, share: float) -> float:
     return float(by_height["z"].iloc[min(int(np.searchsorted(below, share * (1.0 - 1e-9))), len(below) - 1)])
 
 
-def _angle(m: Repose, frame: pd.DataFrame) -> float:
-    """Angle [rad] of a line through the highest spheres of rings, or of strips, of equal width.
+def _angle(m: Repose, frame: pd.DataFrame) -> tuple[float, int]:
+    """Angle [rad] of a line through the highest spheres of rings, or of strips, of equal width, and their number.
 
     They reach over `SURFACE` of the mass, for spheres that have rolled away are no surface. NaN with fewer than three
     of them.
     """
     if len(frame) < 2 * RINGS:
-        return math.nan
+        return math.nan, 0
     x, y = frame["x"] - m.center[0], frame["y"] - m.center[1]
     way = {"distance": np.hypot(x, y), "x": x, "y": y}[m.over].to_numpy()
     top, mass = (frame["z"] + frame["radius"]).to_numpy(), frame["mass"].to_numpy()
@@ -125,8 +125,8 @@ def _angle(m: Repose, frame: pd.DataFrame) -> float:
     highest = [np.flatnonzero(ring == k) for k in range(1, RINGS - 1)]
     highest = [at[np.argmax(top[at])] for at in highest if at.size]
     if len(highest) < 3:
-        return math.nan
-    return float(math.atan(abs(np.polyfit(way[highest], top[highest], 1)[0])))
+        return math.nan, len(highest)
+    return float(math.atan(abs(np.polyfit(way[highest], top[highest], 1)[0]))), len(highest)
 
 
 def _porosity(p: ScenePlan, m: Porosity, frame: pd.DataFrame) -> float:
@@ -227,7 +227,8 @@ def _frame_steps(p: ScenePlan, spheres: pd.DataFrame, rows: pd.DataFrame) -> np.
 
 
 def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame: step, time, a column for each measure but loads and histograms."""
+    """One row per frame: step, time, a column for each measure but loads and histograms; of an angle of repose also
+    the number of its rings."""
     spheres = tables.get("particles", pd.DataFrame({"step": np.zeros(0, int)}))  # loads need no frames
     steps = _frame_steps(p, spheres, tables["rows"])
     frames = dict.fromkeys(steps, spheres.head(0)) | dict(tuple(spheres.groupby("step")))
@@ -240,7 +241,8 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             case Height():
                 table[m.name] = [_height(_chosen(p, m, frames[step]), m.share) for step in steps]
             case Repose():
-                table[m.name] = [_angle(m, _chosen(p, m, frames[step])) for step in steps]
+                found = [_angle(m, _chosen(p, m, frames[step])) for step in steps]
+                table[m.name], table[f"{m.name}_rings"] = zip(*found, strict=True) if found else ([], [])
             case CenterOfMass():
                 chosen = [_chosen(p, m, frames[step]) for step in steps]
                 table[m.name] = [

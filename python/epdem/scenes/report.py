@@ -12,7 +12,7 @@ from ..base import readable
 from ..base.readable import in_words
 from ..base.terminal import Shown, cell, frame_table, heads, warned
 from ..case.outputs import MassFlow, ReboundSpeed
-from ..case.parts import MEASURES, Histogram, Load
+from ..case.parts import MEASURES, Histogram, Load, Repose
 from ..case.walls import LinearMove
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
@@ -328,6 +328,8 @@ def measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
         else:
             times, values = curve(m, tables)
             kind, value, time = m.kind, float(values[-1]), times[-1]
+            if isinstance(m, Repose):
+                kind += f" of {tables['measures'][f'{m.name}_rings'].iloc[-1]:.0f} rings"
         known = values[np.isfinite(values)]
         limits = (known.min(), known.max()) if known.size else (math.nan, math.nan)
         found.append((m.name, kind, time, value, *limits, MEASURES[m.kind].unit))

@@ -35,6 +35,7 @@ class WallLoad:
     number: int
     id: str
     mesh: bool
+    couple: bool = False  # the torque of rolling friction on each sphere is in the formulas
     variables: tuple[tuple[str, str], ...] = ()
 
 
@@ -83,7 +84,9 @@ def loads(p: ScenePlan) -> tuple[WallLoad, ...]:
         mesh = name in p.scene.meshes and name not in round_
         moved = zip("xyz", torque(p, name), strict=True) if mesh and _leaves(p, name) else ()
         variables = tuple((f"torque_{axis}_{name}", formula) for axis, formula in moved)
-        found.append(WallLoad(n, wall_id(name), mesh, variables or _torque_of_tube(n, round_.get(name))))
+        couple = name in round_ and p.model.rolling is not None
+        variables = variables or _torque_of_tube(n, round_.get(name), couple=couple)
+        found.append(WallLoad(n, wall_id(name), mesh, couple, variables))
     return tuple(found)
 
 
@@ -102,8 +105,9 @@ def torque(p: ScenePlan, name: str) -> list[str]:
     return [f"{f[3 + k]}+{arm[a]}*{f[b]}-{arm[b]}*{f[a]}" for k, (a, b) in enumerate(turns)]
 
 
-def _torque_of_tube(n: int, w: CylinderWall | None) -> tuple[tuple[str, str], ...]:
-    """Torque of the force on a sphere at the point of the cylinder that it touches, about the origin of the room."""
+def _torque_of_tube(n: int, w: CylinderWall | None, *, couple: bool) -> tuple[tuple[str, str], ...]:
+    """Torque of the force on a sphere at the point of the cylinder that it touches, about the origin of the room, and
+    with `couple` of rolling friction."""
     if w is None:
         return ()
     across = [x for x in "xyz" if x != w.axis]
@@ -116,6 +120,8 @@ def _torque_of_tube(n: int, w: CylinderWall | None) -> tuple[tuple[str, str], ..
     force = [f"f_force_{wall_id(w.name)}[{k}]" for k in (1, 2, 3)]
     turns = [((k + 1) % 3, (k + 2) % 3) for k in range(3)]
     torque = [f"{place[a]}*{force[b]}-{place[b]}*{force[a]}" for a, b in turns]
+    if couple:
+        torque = [f"{x}+f_couple_{wall_id(w.name)}[{k}]" for k, x in enumerate(torque, 1)]
     return ((f"stretch{n}", stretch), *((f"torque{n}_{k}", formula) for k, formula in enumerate(torque, 1)))
 
 
