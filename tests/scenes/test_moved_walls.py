@@ -43,6 +43,30 @@ def test_the_torque_on_a_plate_is_about_a_place_at_rest(engine, tmp_path):
     assert [row[f"plate_torque_{x}"] for x in "xyz"] == pytest.approx(expected, abs=1e-3 * WEIGHT * X)
 
 
+TUBE = {"name": "tube", "kind": "cylinder", "axis": "x", "diameter": "14 mm", "material": "steel"}
+TUBE |= {"from": "-20 mm", "to": "20 mm"}
+NARROW = {"x": ["-20 mm", "20 mm"], "y": ["-8 mm", "8 mm"], "z": ["-8 mm", "8 mm"]}
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, LAMMPS, YADE])
+@pytest.mark.parametrize("wall", ["plate", "tube"])
+def test_the_torque_on_a_wall_has_that_of_rolling_friction(wall, engine, tmp_path):
+    """A sphere that rolls along x: r x F of its place and the row's force, and mu_r R W about y (cdt)."""
+    low = {"plate": 0.0, "tube": -7e-3}[wall]
+    ball = BALL | {"position": ["-4 mm", "0 mm", f"{1e3 * low + 0.9999} mm"]}
+    ball |= {"velocity": ["0.1 m/s", "0 m/s", "0 m/s"], "spin": ["0 rad/s", "100 rad/s", "0 rad/s"]}
+    contact = {"friction": 0.8, "rolling": {"model": "cdt", "coefficient": 0.2}}
+    data = one_ball({}, {}, ball=ball, contact=contact, output={"rows": 20, "particles": 20, "loads": True})
+    if wall == "tube":
+        data["scene"] |= {"wall": [TUBE], "room": NARROW}
+    found = run(write_case(data, tmp_path), engine, out=tmp_path / "out").results
+    row, x = found.rows.iloc[-1], found.particles.set_index("step")["x"].iloc[-2:].mean()
+    force_x, force_z = row[f"{wall}_force_x"], row[f"{wall}_force_z"]
+    assert force_z == pytest.approx(-WEIGHT, rel=1e-3)
+    couple = row[f"{wall}_torque_y"] - (low * force_x - x * force_z)
+    assert couple == pytest.approx(0.2 * RADIUS * WEIGHT, rel=0.01)
+
+
 @pytest.mark.parametrize("engine", [LIGGGHTS, YADE])
 def test_a_plate_that_tilts_after_a_way_gives_its_work(engine, tmp_path):
     """It lifts the sphere by its turn times the arm."""

@@ -29,6 +29,10 @@ class Planned {
     if (wall && model_.normal().gap().root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
+  /// Whether the model has rolling friction, ours or LIGGGHTS's.
+  bool rolls() const { return ids_.rolling != ROLLING_OFF; }
+  const LAMMPS_NS::Atom& atoms() const { return *lmp_->atom; }
+
   /// Model or setting that our loop does not include; nullptr: none.
   const char* missing() const {
     const char* const found = missing_ ? missing_ : model_.loop_settings().missing();

@@ -30,13 +30,6 @@ void WallLoop::open(FixWallGran& wall, const Plan& plan) {
   plan_ = &plan;
   pass_ = pass_of(*atom, plan, update->dt);
   pass_.sums = plan.growth ? plan.growth->of_all() : nullptr;
-  couples_ = nullptr;
-  if (!plan.settings.rolling) return;
-  const std::string name = std::string("couple_") + wall.id;
-  if (auto* const kept = modify->find_fix_property(name.c_str(), "property/atom", "vector", 3, 0, "epdem", false)) {
-    couples_ = kept->array_atom;
-    std::fill_n(couples_[0], 3L * atom->nlocal, 0.0);
-  }
 }
 
 void WallLoop::close() {
@@ -104,7 +97,10 @@ void WallLoop::scatter() {
       }
       mesh_[k]->add_particle_contribution(i, share, to_wall, triangle_[k], v);
     }
-    if (plan_->settings.rolling) add_couple(k);
+    if (plan_->settings.rolling) {
+      const auto part = [k](const auto& lines) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
+      add_couple(i, mesh_[k], b.overlap.a[k], part(b.from_wall), part(b.force), part(b.torque_i));
+    }
     if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k]);
     if (!plan_->tally) continue;
     const double stored = b.stored_energy.a[k];
@@ -114,19 +110,23 @@ void WallLoop::scatter() {
   }
 }
 
-/// The torque of rolling friction is no moment of a force: LIGGGHTS's sums over walls lack it.
-void WallLoop::add_couple(int k) {
-  const Block& b = *block_;
-  const auto part = [k](const auto& lines) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
-  const Vec<double> from_wall = part(b.from_wall);
-  const Vec<double> arm = to_middle(b.overlap.a[k], from_wall) - from_wall;
-  const Vec<double> couple = part(b.torque_i) - cross(arm, part(b.force));
-  double none[3] = {}, on_wall[3] = {-couple.x, -couple.y, -couple.z};
-  if (mesh_[k]) {
-    if (auto* const sums = dynamic_cast<LAMMPS_NS::MeshModuleStress*>(mesh_[k]->get_module("stress")))
+void WallLoop::find_couples(const FixWallGran& wall) {
+  const std::string name = std::string("couple_") + wall.id;
+  const auto* const kept = modify->find_fix_property(name.c_str(), "property/atom", "vector", 3, 0, "epdem", false);
+  couples_ = kept ? kept->array_atom : nullptr;
+  if (couples_ && atom->nlocal) std::fill_n(couples_[0], 3L * atom->nlocal, 0.0);
+}
+
+void WallLoop::add_couple(int i, LAMMPS_NS::FixMeshSurface* mesh, double overlap, const Vec<double>& from_wall,
+                          const Vec<double>& force, const Vec<double>& torque) {
+  const Vec<double> couple = torque - cross(to_middle(overlap, from_wall) - from_wall, force);
+  if (mesh) {
+    double none[3] = {}, on_wall[3] = {-couple.x, -couple.y, -couple.z};
+    if (auto* const sums = dynamic_cast<LAMMPS_NS::MeshModuleStress*>(mesh->get_module("stress")))
       sums->add_global_external_contribution(none, on_wall);
   } else if (couples_) {
-    for (int x = 0; x < 3; ++x) couples_[b.i[k]][x] -= on_wall[x];
+    const double of_axes[] = {couple.x, couple.y, couple.z};
+    for (int x = 0; x < 3; ++x) couples_[i][x] += of_axes[x];
   }
 }
 

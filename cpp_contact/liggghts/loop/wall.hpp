@@ -43,6 +43,14 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   /// Whether growth closes the gap between a sphere and the wall.
   bool stands_across_gap(const LIGGGHTS::ContactModels::SurfacesIntersectData& s) const;
 
+  /// Looks for the fix in which a deck keeps the torque of rolling friction of a wall on each sphere, and empties it.
+  void find_couples(const LAMMPS_NS::FixWallGran& wall);
+
+  /// Adds what the torque on a sphere has beside the moment of the force, as rolling friction, to the sums of the wall:
+  /// LIGGGHTS's own are those of the forces. from_wall: to the centre of the sphere.
+  void add_couple(int i, LAMMPS_NS::FixMeshSurface* mesh, double overlap, const Vec<double>& from_wall,
+                  const Vec<double>& force, const Vec<double>& torque);
+
   /// One sphere in contact with the wall; `triangle` of a mesh, or none.
   void note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, const double* v_wall,
             LAMMPS_NS::FixMeshSurface* mesh, int triangle);
@@ -51,7 +59,6 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   /// All that is noted.
   void compute();
   void scatter();
-  void add_couple(int k);
 
   const std::unique_ptr<Block> block_;
   LAMMPS_NS::FixMeshSurface* mesh_[block_size];
@@ -76,6 +83,7 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
   }
 
   void open(LAMMPS_NS::FixWallGran& wall) override {
+    if (rolls()) loop_.find_couples(wall);
     const char* why = missing();
     if (!why) why = loop_.obstacle(wall, plan_);
     if (why)
@@ -90,10 +98,15 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
                      int triangle = 0) override {
     double v_middle[3];
     if (triangles && intersects && velocity_in_middle(s, v_wall, *triangles, triangle, v_middle)) v_wall = v_middle;
-    if (loop_.is_open() && (intersects || loop_.stands_across_gap(s)))
-      loop_.note(s, v_wall, mesh, triangle);
-    else
-      Base::compute_force(wall, s, intersects, v_wall, mesh, at, triangles, triangle);
+    if (loop_.is_open() && (intersects || loop_.stands_across_gap(s))) return loop_.note(s, v_wall, mesh, triangle);
+    const LAMMPS_NS::Atom& atom = atoms();
+    const Vec<double> from_wall = vector_of(s.delta), force = vector_of(atom.f[s.i]),
+                      torque = vector_of(atom.torque[s.i]);
+    const double overlap = s.deltan;
+    Base::compute_force(wall, s, intersects, v_wall, mesh, at, triangles, triangle);
+    if (rolls() && intersects)
+      loop_.add_couple(s.i, mesh, overlap, from_wall, vector_of(atom.f[s.i]) - force,
+                       vector_of(atom.torque[s.i]) - torque);
   }
 
  private:
