@@ -14,6 +14,7 @@ from epdem.engines.frames import Frames
 from epdem.engines.lammps import launcher, resume
 from epdem.engines.lammps import tables as tables
 from epdem.errors import CaseError
+from epdem.jobs.engine import check
 from epdem.jobs.stage import write_deck
 from epdem.scenes.plan import plan
 
@@ -75,7 +76,7 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
 
 def test_motions_that_liggghts_cannot_continue_are_refused_there():
     with pytest.raises(CaseError, match=r"output.restarts: in LIGGGHTS only walls with linear motions .* lammps"):
-        scene_engine("liggghts").check(plan(parse(moving(restarts=5))))
+        check(scene_engine("liggghts"), plan(parse(moving(restarts=5))))
 
 
 def test_a_damaged_frame_is_written_again(tmp_path):
