@@ -85,6 +85,36 @@ def test_the_file_of_a_kind_counts_from_the_case_and_goes_with_it(mill, tmp_path
     assert one.scene == two.scene and read_toml(other / "case.toml")["scene"]["kind"] == str(tmp_path / "mill.toml.j2")
 
 
+TABLES = """{% for name in ["one", "two"] %}
+[[scene.row]]
+name = "{{ name }}"
+wall = "shell"
+torque = "+z"
+title = "{{ name }}"
+{% endfor %}
+[[scene.measure]]
+name = "many"
+kind = "count"
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('wall = "shell"', 'wall = "hull"', "row.one.wall = 'hull' is no wall"),
+        ('torque = "+z"', 'torque = "up"', "row.0.torque = 'up', must be"),
+        ('kind = "count"', 'kind = "cont"', "measure.0.kind = 'cont', must be one of"),
+        ('name = "many"', "colour = 3", "measure.0.colour = 3, unknown key"),
+    ],
+)
+def test_a_mistake_in_a_table_names_its_line(old, new, words, mill):
+    text = MILL[: MILL.index("row = [")] + MILL[MILL.index("places = ") :] + TABLES.replace(old, new)
+    (mill.parent / "mill.toml.j2").write_text(text)
+    line = text.split("\n").index(new) + 1
+    with pytest.raises(CaseError, match=re.escape(f"mill.toml.j2', line {line}: {words}")):
+        load(mill)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -131,7 +161,22 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
             "scene of kind './mill.toml.j2', line 13: wall.0.kind = 'tube', must be one of",
         ),
         ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
-        ('wall = "shell"', 'wall = "hull"', "row.torque.wall = 'hull' is no wall that has a torque"),
+        (
+            'wall = "shell"',
+            'wall = "hull"',
+            "line 16: row.torque.wall = 'hull' is no wall that has a torque; there are shell",
+        ),
+        (
+            'key_figure = ["torque"]',
+            'check = [{ kind = "floor_load", row = "weight" }]',
+            "line 17: check.floor_load.row = 'weight' is no row; there are torque",
+        ),
+        (
+            'key_figure = ["torque"]',
+            'stages = { wall = "shell", against = "lid", area = "1 m^2", pressure = "torque", opposite = "torque" }',
+            "line 17: stages.against = 'lid' is no wall; there are shell",
+        ),
+        ("phase = [{", "fase = [{", "line 15: fase: unknown key"),
     ],
 )
 def test_a_mistake_of_a_kind_names_its_file(old, new, words, mill):

@@ -152,3 +152,15 @@ def test_a_run_under_a_moving_wall_goes_on_bitwise_with_dashpots(engine, moves, 
         assert resumed.step == step
         for name, table in whole.items():
             assert table.equals(again[name]), f"{name} from {step}"
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, LAMMPS, YADE])
+def test_a_wall_that_never_yields_is_that_of_a_strength_which_no_pressure_reaches(engine, tmp_path):
+    ends = []
+    for strength in ("inf Pa", "1e5 GPa"):
+        data = one_ball({}, ball=BALL | {"velocity": ["0 m/s", "0 m/s", "-1 m/s"]})
+        data["materials"] = data["materials"] | {"steel": data["materials"]["steel"] | {"yield_stress": strength}}
+        del data["viscous"]
+        folder = tmp_path / strength.replace(" ", "")
+        ends.append(run(write_case(data, folder), engine, out=folder / "out").results.particles.iloc[-1])
+    assert ends[0]["vz"] == pytest.approx(ends[1]["vz"], rel=1e-9) and 0.1 < ends[0]["vz"] < 0.95

@@ -253,7 +253,7 @@ def _line(text: str, said: str) -> str:
     found = [table for table in tables if re.match(rf"\[+scene\.{kind}\]", table)]
     part = next((table for table in found if re.search(rf'^name = "{which}"', table, re.M)), "")
     part = part or (found[int(which)] if which.isdigit() and int(which) < len(found) else "")
-    keys = [key for key in (*reversed(rest), kind) if key and not key.isdigit()]
+    keys = [key for key in (reversed(rest) if part else [kind]) if key and not key.isdigit()]
     lines = [line for key in keys for line in re.findall(rf"^{key}\b.*", part or text, re.M)]
     return next(iter([*lines, *part.splitlines()]), "").rpartition(MARK)[2]
 
