@@ -154,7 +154,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     reach = p.largest * (ENLARGED if p.model.compaction else 1.0) + skin
     refuse_narrow(p, 4.0 * reach, "YADE finds no contacts of spheres whose bounds are half of a period")
     m, phases, every_wall = p.model, tuple(_phases(p)), walls(p)
-    shapes = ("Sphere", *sorted({"Facet" if w.file else "Wall" for w in every_wall.values()}))
+    shapes = ("Sphere", *sorted({w.shape.capitalize() for w in every_wall.values()}))
     sides = zip(p.scene.periods, p.box[0::2], p.box[1::2], strict=True)
     x, y, z = (period or 2.0 * (high - low) for period, low, high in sides)
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}

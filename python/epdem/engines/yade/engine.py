@@ -22,7 +22,7 @@ from . import deck, launcher, tables
 from .classes import ContactClasses, DeckMaterial, functors, materials
 from .deck import ImpactDeck, axes, body_tables
 from .launcher import copy_part, deck_modules
-from .scene_parts import EDGES, is_endless, table_text
+from .scene_parts import edges, table_text
 
 
 class Yade(Host):
@@ -109,7 +109,7 @@ class Yade(Host):
         return super().check(job)
 
     def notes(self, plan: ScenePlan) -> list[str]:
-        return super().notes(plan) + [EDGES] * any(not is_endless(plan, name) for name in plan.scene.meshes)
+        return super().notes(plan) + edges(plan)
 
     def data(self, deck: Any) -> dict[str, str]:
         head = "# x y z v_z v_x omega_y, SI" if deck.plan.experiment.oblique else "# x y z v_z, SI"

@@ -7,8 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from ...base import rendering as decks
-from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, VibrateMove
+from ...case.walls import BoxWall, LinearMove, Move, PlaneWall, PlateWall, PressMove, VibrateMove
 from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.filling import Insertion
@@ -17,8 +19,9 @@ from ...scenes.plan import Phase, PhaseSteps, ScenePlan
 from ..input_script import BORNE, MISS, bed_height, first_look, torque_origin
 
 EDGES = (
-    "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
-    "up to twice as large near the inner edges of flat walls"
+    "walls of triangles ({}): YADE counts a sphere that touches an edge once for each triangle there, so that its "
+    "force is twice as large within sqrt(2 R overlap) of an edge between flat neighbours, and n times at a corner of n "
+    "triangles, such as the middle of the end of a cylinder (48)"
 )
 
 
@@ -28,7 +31,8 @@ HEAD = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"  # of
 
 @dataclass(frozen=True)
 class Wall:
-    """A wall: an infinite plane across `axis` at `place` [m], or triangles whose corners are in `file`.
+    """A wall by the `shape` of its bodies in YADE: an infinite plane (wall) across `axis` at `place` [m], rectangles
+    (box) or triangles (facet) that are in `file`.
 
     material: its number; number: of the wall in contact tables.
     """
@@ -36,6 +40,7 @@ class Wall:
     name: str
     number: int
     material: int
+    shape: str = "wall"
     axis: int = 0
     place: float = 0.0
     file: str = ""
@@ -64,24 +69,41 @@ def check_walls(p: ScenePlan) -> None:
             )
 
 
+def is_flat(p: ScenePlan, name: str) -> bool:
+    """Whether each rectangle of a wall, two triangles of its mesh, is one body in YADE, which counts a sphere on an
+    edge between two bodies twice. YADE's box, a flat one, misses spheres beyond the sides of a periodic cell."""
+    return is_endless(p, name) or (not p.scene.periodic and isinstance(p.scene.meshes[name], PlateWall | BoxWall))
+
+
+def edges(p: ScenePlan) -> list[str]:
+    """The warning about walls that have edges between triangles."""
+    names = [name for name in p.scene.meshes if not is_flat(p, name)]
+    return [EDGES.format(", ".join(names))] if names else []
+
+
 def is_endless(p: ScenePlan, name: str) -> bool:
-    """Whether a wall of triangles is a plane without edges: a plate as wide as the periodic cell that moves along z."""
+    """Whether a wall of triangles is a plane without edges: a plate as wide as the periodic cell that moves across
+    itself."""
     mesh = p.scene.meshes[name]
-    if not (p.scene.periodic and isinstance(mesh, PlateWall) and mesh.axis == "z"):
+    if not (p.scene.periodic and isinstance(mesh, PlateWall)):
         return False
-    wide = all(spans(mesh, axis, p.box) for axis in "xy")
-    return wide and all(_is_along_z(phase.moves[name]) for phase in p.phases if name in phase.moves)
+    flat = [k for k in range(3) if "xyz"[k] != mesh.axis]
+    moves = [phase.moves[name] for phase in p.phases if name in phase.moves]
+    return all(spans(mesh, "xyz"[k], p.box) for k in flat) and not any(_is_along(move, flat) for move in moves)
 
 
-def _is_along_z(move: Move) -> bool:
+def _is_along(move: Move, axes: Sequence[int]) -> bool:
+    """Whether a wall turns, or moves along one of some axes."""
     match move:
         case LinearMove():
-            return not any(move.velocity[:2])
+            way = move.velocity
         case VibrateMove():
-            return not any(move.amplitude[:2])
+            way = move.amplitude
         case PressMove():
-            return not any(move.direction[:2])
-    return False
+            way = move.direction
+        case _:
+            return True
+    return any(way[k] for k in axes)
 
 
 def walls(p: ScenePlan) -> dict[str, Wall]:
@@ -90,9 +112,10 @@ def walls(p: ScenePlan) -> dict[str, Wall]:
     for number, name in enumerate(wall_names(p), p.count):
         material = p.wall_types[name] - 1
         if name in planes and not p.scene.periodic:
-            found[name] = Wall(name, number, material, "xyz".index(planes[name].axis), planes[name].at)
+            found[name] = Wall(name, number, material, "wall", "xyz".index(planes[name].axis), planes[name].at)
         else:
-            found[name] = Wall(name, number, material, file=f"wall_{name}.txt")
+            flat = name not in planes and is_flat(p, name) and not is_endless(p, name)
+            found[name] = Wall(name, number, material, "box" if flat else "facet", file=f"wall_{name}.txt")
     return found
 
 
@@ -191,11 +214,15 @@ def void(p: ScenePlan, phase: str) -> str:
 
 
 def files(p: ScenePlan) -> dict[str, str]:
-    """The corners of each wall's triangles, the spheres of later phases and the sizes of fills, by file."""
+    """The rectangles or triangles of each wall, the spheres of later phases and the sizes of fills, by file."""
     texts = {}
-    head = "# corners of a triangle, x y z of each [m]"
     for wall in (w for w in walls(p).values() if w.file):
-        if wall.name in p.triangles and not is_endless(p, wall.name):
+        head = "# corners of a triangle, x y z of each [m]"
+        if wall.shape == "box":
+            head, corners = "# a rectangle: x y z of its centre, half of its size [m]", p.triangles[wall.name]
+            low, high = (f(corners.reshape(-1, 6, 3), axis=1) for f in (np.min, np.max))
+            rows = np.hstack([(low + high) / 2, (high - low) / 2]).tolist()
+        elif wall.name in p.triangles and not is_endless(p, wall.name):
             rows = p.triangles[wall.name].reshape(-1, 9).tolist()
         else:
             rows = [_large_triangle(p, wall.name)]
@@ -219,15 +246,19 @@ def table_text(head: str, rows: Sequence[Sequence[float]]) -> str:
 
 def _large_triangle(p: ScenePlan, name: str) -> list[float]:
     """Corners of a triangle whose edges no sphere meets: larger than the room, where this repeats than the cell."""
-    planes = _planes(p)
-    axis, at = (planes[name].axis, planes[name].at) if name in planes else ("z", float(p.triangles[name][0, 0, 2]))
+    if name in (planes := _planes(p)):
+        axis, at = "xyz".index(planes[name].axis), planes[name].at
+    else:
+        points = p.triangles[name].reshape(-1, 3)
+        axis = int(np.ptp(points, axis=0).argmin())
+        at = float(points[0, axis])
     legs = [LEG_OF_PERIOD if period else LEG for period in p.scene.periods]
     corners = [[p.box[2 * k] - begin * _size(p, k) for k, (begin, _) in enumerate(legs)] for _ in range(3)]
-    first, second = (k for k in range(3) if "xyz"[k] != axis)
+    first, second = (k for k in range(3) if k != axis)
     corners[1][first] += legs[first][1] * _size(p, first)
     corners[2][second] += legs[second][1] * _size(p, second)
     for corner in corners:
-        corner["xyz".index(axis)] = at
+        corner[axis] = at
     return [x for corner in corners for x in corner]
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from yade import O
+from yade.minieigenHP import Vector3
 from yade.utils import sumForces, sumTorques
 from yade.wrapper import PyRunner
 
@@ -20,11 +21,15 @@ STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius an
 
 
 class Triangles:
-    """Forces on the triangles of walls and their wear; walls: facets and Finnie's constant [m^2/N] of each, 0: none."""
+    """Forces on the triangles of walls and their wear; walls: bodies (facets, or flat boxes of two triangles each) and
+    Finnie's constant [m^2/N] of each, 0: none."""
 
     def __init__(self, walls: Sequence[tuple[Sequence[int], float]]):
-        self.worn = {k: constant for facets, constant in walls if constant for k in facets}
-        self.volume = dict.fromkeys((k for facets, _ in walls for k in facets), 0.0)  # worn so far [m^3]
+        self.worn = {k: constant for bodies, constant in walls if constant for k in bodies}
+        shapes = {k: O.bodies[k].shape for bodies, _ in walls for k in bodies}
+        self.flat = {k: np.array(tuple(shape.extents)) for k, shape in shapes.items() if hasattr(shape, "extents")}
+        triangles = ((k, n) for k in shapes for n in range(1 + (k in self.flat)))
+        self.volume = dict.fromkeys(triangles, 0.0)  # worn so far [m^3]
 
     def wear(self) -> None:
         """Add what the spheres that approach a triangle wear in this step (Finnie 1960, Wear 3, 87)."""
@@ -43,16 +48,30 @@ class Triangles:
                 steep = 3.0 * sine > cosine
                 share = cosine**2 / 3.0 if steep else 2.0 * sine * cosine - 3.0 * sine**2
                 force = (i.phys.normalForce + i.phys.shearForce).norm()
-                self.volume[k] += 2.0 * constant * share * force * speed * O.dt
+                self.volume[self.at(k, i)] += 2.0 * constant * share * force * speed * O.dt
+
+    def at(self, k: int, contact: Any) -> tuple[int, int]:
+        """Body and number of its triangle at a contact: the triangles of a box meet on its diagonal."""
+        if k not in self.flat:
+            return k, 0
+        state, size = O.bodies[k].state, self.flat[k]
+        u, v = (np.array(tuple(state.ori.conjugate() * (contact.geom.contactPoint - state.pos))) / size)[size > 0.0]
+        return k, int(v > u)
 
     def normal(self, k: int) -> Any:
-        """Unit normal of a facet."""
-        return O.bodies[k].state.ori * O.bodies[k].shape.normal
+        """Unit normal of a facet or of a flat box."""
+        state, shape = O.bodies[k].state, O.bodies[k].shape
+        return state.ori * (Vector3(AXES[self.flat[k].argmin()]) if k in self.flat else shape.normal)
 
     def table(self) -> Any:
         """Normal force [N], tangential force [N], worn volume [m^3] of each triangle, shape (n, 3)."""
-        force = np.array([tuple(O.forces.f(k)) for k in self.volume])
-        normal = np.array([tuple(self.normal(k)) for k in self.volume])
+        forces = dict.fromkeys(self.volume, np.zeros(3))
+        for k in {k for k, _ in forces}:
+            for i in (i for i in O.bodies[k].intrs() if i.isReal):
+                on_second = np.array(tuple(i.phys.normalForce + i.phys.shearForce))
+                forces[self.at(k, i)] = forces[self.at(k, i)] + on_second * (1.0 if i.id2 == k else -1.0)
+        force = np.array([*forces.values()])
+        normal = np.array([tuple(self.normal(k)) for k, _ in self.volume])
         pressed = (force * normal).sum(axis=1)
         tangential = np.linalg.norm(force - pressed[:, None] * normal, axis=1)
         return np.column_stack([np.abs(pressed), tangential, [*self.volume.values()]])
