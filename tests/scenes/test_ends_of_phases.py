@@ -201,3 +201,29 @@ def test_the_largest_overlap_of_a_law_without_yield_is_that_of_now(engine, tmp_p
     contacts = run(write_case(data, tmp_path), engine, out=tmp_path / "out").results.contacts
     assert contacts["overlap"].nunique() > 2
     assert contacts["delta_max"].equals(contacts["overlap"])
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("first", [{}, {"duration": "8.05 ms"}, {"until": {"count": 1, "after": "1 ms"}}], ids=str)
+def test_walls_that_come_and_go_bear_spheres_in_each_frame_of_their_phases(engine, first, tmp_path):
+    """Two spheres, one at rest from the start, whose force is the weight, and one that comes with phase b."""
+    weight, young = 2500 * 4 / 3 * math.pi * 1e-9 * 9.81, 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    sunk = 1e3 * (0.75 * weight / young / math.sqrt(1e-3)) ** (2 / 3)
+    data = falling(first, {}, {})
+    gate, bodies = data["scene"]["wall"][1], data["scene"]["body"][:2]
+    for body, z in zip(bodies, (11.0 - sunk, 21.0), strict=True):
+        body |= {"position": [*body["position"][:2], f"{z!r} mm"], "velocity": ["0 m/s"] * 3}
+    data["scene"]["wall"].append(gate | {"name": "trap", "at": "20 mm", "phases": ["b"]})
+    data["scene"]["body"] = bodies
+    results = run(write_case(data, tmp_path), engine, out=tmp_path / "out").results
+    begins, ends = results.phases["begin"], results.phases["end"]
+    frames = np.array(sorted({*results.particles["step"]}))
+    for wall, there in (
+        ("gate", frames <= ends[0]),
+        ("trap", (frames > begins[1]) & (frames <= ends[1])),
+        ("floor", frames < 0),
+    ):
+        contacts = results.contacts[results.contacts["wall"] == wall]
+        assert contacts["step"].to_list() == frames[there].tolist()
+        if wall == "gate":
+            assert contacts["force"].to_numpy() == pytest.approx(weight, rel=1e-6)

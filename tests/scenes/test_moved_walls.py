@@ -164,3 +164,15 @@ def test_a_wall_that_never_yields_is_that_of_a_strength_which_no_pressure_reache
         folder = tmp_path / strength.replace(" ", "")
         ends.append(run(write_case(data, folder), engine, out=folder / "out").results.particles.iloc[-1])
     assert ends[0]["vz"] == pytest.approx(ends[1]["vz"], rel=1e-9) and 0.1 < ends[0]["vz"] < 0.95
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, LAMMPS, YADE])
+def test_the_torque_on_a_plate_is_taken_in_the_middle_of_the_overlap(engine, tmp_path):
+    """A plate slides below a frozen sphere: half of the overlap times the friction."""
+    overlap = 0.1e-3
+    ball = BALL | {"position": ["0 mm", "0 mm", "0.9 mm"], "frozen": True}
+    data = one_ball({"move": [ASIDE]}, ball=ball, contact={"friction": 0.3}, law={"name": "hertz"})
+    data["scene"]["phase"][0]["duration"] = "1 ms"
+    row = run(write_case(data, tmp_path), engine, out=tmp_path / "out").results.rows.iloc[-1]
+    assert row["plate_force_x"] == pytest.approx(0.3 * row["plate_force_z"], rel=1e-6) and row["plate_force_z"] < 0
+    assert row["plate_torque_y"] == pytest.approx(-0.5 * overlap * row["plate_force_x"], rel=1e-6)

@@ -140,6 +140,20 @@ namespace loop = epdem::liggghts::loop;
   update->dt = dt;
 }
 
+/// LIGGGHTS takes the torque on a mesh at its surface. A contact of our models has one point for force, velocity and
+/// torque, in the middle of the overlap.
+[[gnu::visibility("default")]] void FixMeshSurface::add_particle_contribution(int i, double* force, double* to_wall,
+                                                                              int triangle, double* v_wall) {
+  static const auto original = loop::next<FixMeshSurface*, int, double*, double*, int, double*>(
+      "_ZN9LAMMPS_NS14FixMeshSurface25add_particle_contributionEiPdS1_iS1_");
+  if (!epdem::liggghts::library_matches(lmp) || !epdem::liggghts::Simulation::find(lmp))
+    return original(this, i, force, to_wall, triangle, v_wall);
+  const auto surface = epdem::liggghts::vector_of(to_wall);
+  const auto more = epdem::to_middle(atom->radius[i] - length(surface), -surface);
+  double to_middle[3] = {surface.x + more.x, surface.y + more.y, surface.z + more.z};
+  original(this, i, force, to_middle, triangle, v_wall);
+}
+
 [[gnu::visibility("default")]] void FixWallGran::post_force_primitive(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran20post_force_primitiveEi");
   const loop::ScopedWall work(dynamic_cast<loop::BatchedWall*>(impl), *this);

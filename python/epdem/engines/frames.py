@@ -12,8 +12,8 @@ import pandas as pd
 from ..errors import EngineError
 from ..scenes.plan import ScenePlan
 
-# by kind: name of the file of a step, steps between two, the table of one file
-Kinds = dict[str, tuple[str, int, Callable[[Path], pd.DataFrame]]]
+# by kind: name of the file of a step, the steps, the table of one file
+Kinds = dict[str, tuple[str, list[int], Callable[[Path], pd.DataFrame]]]
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Frames:
 
     def table(self, kind: str) -> pd.DataFrame:
         """The frames of a kind, one below the other. Raises EngineError for one that is missing or not whole."""
-        name, every, read = self.kinds[kind]
+        name, steps, read = self.kinds[kind]
         tables = []
-        for step in (n for n in self.plan.frame_steps(every) if n not in self.without):
+        for step in (n for n in steps if n not in self.without):
             tables.append(_read(self.folder / name.format(step), read))
             tables[-1].insert(0, "step", step)
         return pd.concat(tables, ignore_index=True)
@@ -46,14 +46,14 @@ class Frames:
 
     def damaged(self, upto: int) -> list[int]:
         """Steps up to `upto` of which a frame is missing or not whole."""
-        steps = set()
-        for name, every, read in self.kinds.values():
-            for step in (n for n in self.plan.frame_steps(every) if n <= upto):
+        lost = set()
+        for name, steps, read in self.kinds.values():
+            for step in (n for n in steps if n <= upto):
                 try:
                     _read(self.folder / name.format(step), read)
                 except EngineError:
-                    steps.add(step)
-        return sorted(steps)
+                    lost.add(step)
+        return sorted(lost)
 
 
 def _read(path: Path, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:

@@ -229,6 +229,15 @@ class ScenePlan:
         steps = [*range(0, self.steps + 1, every), *(end for _, end in recorded)]
         return sorted({n for n in steps if any(low <= n <= high for low, high in recorded)})
 
+    def frame_steps_with(self, gate: str, every: int) -> list[int]:
+        """The steps of the frames in which a gate is there: a frame at the end of a phase is of this phase."""
+        steps, found, first = self.frame_steps(every), [], 0
+        for phase in self.phases:
+            if phase.case.record and gate in phase.gates:
+                found += [n for n in steps if first <= n <= phase.end]
+            first = phase.end + phase.case.record
+        return found
+
     @property
     def phase_table(self) -> pd.DataFrame:
         """One row per phase: name, steps and times [s] of its begin and end, whether `until` ended it."""

@@ -58,10 +58,14 @@ def _frame(path: Path, names: list[str]) -> pd.DataFrame:
 def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres, contacts between them, and with each wall."""
     values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
-    found = {"particles": (p.frames, columns.columns_of_frames(p)), "contacts": (p.contacts, ["i", "j", *values])}
-    for name in contact_walls(p):
-        found[f"contacts_{wall_id(name)}"] = p.contacts, ["i", *values, *columns.NORMAL]
-    return {k: (f"{k}.{{}}.txt", every, partial(_frame, names=names)) for k, (every, names) in found.items() if every}
+    found = {"particles": (p.frame_steps(p.frames), columns.columns_of_frames(p))} if p.frames else {}
+    if p.contacts:
+        steps, of_wall = p.frame_steps(p.contacts), ["i", *values, *columns.NORMAL]
+        found["contacts"] = steps, ["i", "j", *values]
+        found |= {f"contacts_{wall_id(name)}": (steps, of_wall) for name in contact_walls(p)}
+        gates = {w.name: p.frame_steps_with(w.name, p.contacts) for w in p.scene.gates}
+        found |= {f"contacts_{wall_id(name)}": (own, of_wall) for name, own in gates.items() if own}
+    return {k: (f"{k}.{{}}.txt", steps, partial(_frame, names=names)) for k, (steps, names) in found.items()}
 
 
 def particles(frames: Frames) -> pd.DataFrame:
@@ -72,7 +76,8 @@ def particles(frames: Frames) -> pd.DataFrame:
 def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame."""
     found = [frames.table("contacts").assign(wall="")]
-    for name in contact_walls(frames.plan):
-        found.append(frames.table(f"contacts_{wall_id(name)}").assign(wall=name, j=0))
+    for name in (w.name for w in frames.plan.scene.wall):
+        if (kind := f"contacts_{wall_id(name)}") in frames.kinds:
+            found.append(frames.table(kind).assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     return columns.complete(frames.plan, raw, spheres, frames.folder)

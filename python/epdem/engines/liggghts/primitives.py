@@ -106,14 +106,16 @@ def torque(p: ScenePlan, name: str) -> list[str]:
 
 
 def _torque_of_tube(n: int, w: CylinderWall | None, *, couple: bool) -> tuple[tuple[str, str], ...]:
-    """Torque of the force on a sphere at the point of the cylinder that it touches, about the origin of the room, and
+    """Torque of the force on a sphere in the middle of its overlap with the cylinder, about the origin of the room, and
     with `couple` of rolling friction."""
     if w is None:
         return ()
     across = [x for x in "xyz" if x != w.axis]
     off = {x: f"({x}-{number(c)})" for x, c in zip("xyz", w.axis_point, strict=True)}
     least = (1e-9 * w.diameter) ** 2  # a sphere on the axis bears no force
-    stretch = f"{number(0.5 * w.diameter)}/sqrt({off[across[0]]}^2+{off[across[1]]}^2+{number(least)})"
+    off_axis = f"sqrt({off[across[0]]}^2+{off[across[1]]}^2+{number(least)})"
+    wide = number(0.5 * w.diameter)
+    stretch = f"0.5+0.5*({wide}+r*(1-2*({off_axis}>{wide})))/{off_axis}"  # r: a sphere outside is on the other side
     place = [
         x if x == w.axis else f"({number(c)}+{off[x]}*v_stretch{n})" for x, c in zip("xyz", w.axis_point, strict=True)
     ]

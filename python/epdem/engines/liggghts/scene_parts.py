@@ -235,7 +235,7 @@ def _force(p: ScenePlan, name: str, k: int) -> str:
 
 def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     """The phases of a scene."""
-    gates = {w.name: primitive(p, w) for w in p.scene.gates}
+    gates = {w.name: primitive(p, w, force=bool(p.contacts)) for w in p.scene.gates}
     found: list[DeckPhase] = []
     with_power = "wall_power" in p.row_columns
     for run in p.phase_steps:

@@ -2,12 +2,14 @@
 """The trajectory of impacts and the tables of a scene from LIGGGHTS's files, whose formats are in `dump`."""
 
 import re
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from ...case.walls import CylinderWall, PlaneWall
 from ...errors import EngineError
 from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
@@ -71,20 +73,26 @@ def _meshes(p: ScenePlan) -> list[str]:
 def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres; contacts between them and with walls of triangles, which have the columns of the
     law, the overlap [m], the force [N] on the first body and, at walls, the points POINTS; stresses on triangles."""
-    found: Kinds = {"particles": ("particles.{}.bin", p.frames, partial(_frame, names=_particle_names(p)))}
+    found: dict[str, tuple[str, int, Callable[[Path], pd.DataFrame]]] = {}
+    found["particles"] = "particles.{}.bin", p.frames, partial(_frame, names=_particle_names(p))
     values, meshes = [*history(p.model), "overlap", *columns.FORCE], _meshes(p)
     pairs, touched = ["i", "j", *values], [*["mesh"] * (len(meshes) > 1), "i", *values, *POINTS]
     found["contacts"] = "contacts.{}.txt", p.contacts, partial(_local, names=pairs)
     found["wall_contacts"] = "wall_contacts.{}.txt", p.contacts * (len(meshes) > 0), partial(_local, names=touched)
     for name in p.stress_walls:
         found[f"stress_{name}"] = f"stress_{name}.{{}}.vtk", p.frames, partial(_stresses, p, name)
-    return {kind: (file, every, read) for kind, (file, every, read) in found.items() if every}
+    return {kind: (file, p.frame_steps(every), read) for kind, (file, every, read) in found.items() if every}
+
+
+def _formulas(p: ScenePlan) -> dict[str, PlaneWall | CylinderWall]:
+    """The walls that are a formula, last those that are not always there."""
+    return {w.name: w for w in (*walls(p), *p.scene.gates)}
 
 
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
     values = [*history(p.model), *columns.FORCE]
-    names += [f"{value}_{w.name}" for w in walls(p) for value in values] if p.contacts else []
+    names += [f"{value}_{name}" for name in _formulas(p) for value in values] if p.contacts else []
     return [*names, *p.works]
 
 
@@ -93,10 +101,12 @@ def particles(frames: Frames) -> pd.DataFrame:
     return columns.whole(frames.plan, frames.table("particles"), frames.folder)
 
 
-def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
+def _primitives(p: ScenePlan, in_frames: pd.DataFrame) -> list[pd.DataFrame]:
     """Contacts with walls that are a formula: overlap by it, its largest value from LIGGGHTS's memory of the wall."""
-    found = []
-    for w in walls(p):
+    found, gates = [], {w.name for w in p.scene.gates}
+    for w in _formulas(p).values():
+        there = in_frames["step"].isin(p.frame_steps_with(w.name, p.frames))
+        spheres = in_frames[there] if w.name in gates else in_frames
         overlap, normal = overlaps(w, spheres)
         values = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
         others = {name: spheres[f"{name}_{w.name}"] for name in [*history(p.model), *columns.FORCE]}
@@ -106,14 +116,17 @@ def _primitives(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
 
 
 def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
-    """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the primitives.
+    """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the primitives and all
+    that it has of gates.
 
     Raises EngineError as `particles` does.
     """
     p = frames.plan
     parts = [frames.table("contacts").assign(wall=""), *_primitives(p, spheres)]
-    for name in [f"{force}_{w.name}" for w in walls(p) for force in columns.FORCE]:
-        del spheres[name]
+    gates = {w.name for w in p.scene.gates}
+    for name in _formulas(p):
+        for value in [*history(p.model)] * (name in gates) + columns.FORCE:
+            del spheres[f"{value}_{name}"]
     if names := _meshes(p):
         touched = frames.table("wall_contacts")
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]

@@ -50,7 +50,11 @@ def kinds(p: ScenePlan) -> Kinds:
         "contacts": (p.contacts, CONTACT if p.model.compaction else CONTACT[:11]),
         "triangles": (p.frames * bool(p.stress_walls), ["normal_stress", "shear_stress", "wear"]),
     }
-    return {k: (f"{k}.{{}}.npy", every, partial(_frame, names=names)) for k, (every, names) in found.items() if every}
+    return {
+        kind: (f"{kind}.{{}}.npy", p.frame_steps(every), partial(_frame, names=names))
+        for kind, (every, names) in found.items()
+        if every
+    }
 
 
 def _frame(path: Path, names: list[str]) -> pd.DataFrame:

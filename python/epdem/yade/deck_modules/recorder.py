@@ -11,7 +11,7 @@ from yade.minieigenHP import Vector3
 from yade.utils import sumForces, sumTorques
 from yade.wrapper import PyRunner
 
-from .spheres import Fill, Spheres
+from .spheres import Fill, Spheres, remove
 
 KINDS = ("force", "torque")  # of loads
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -134,6 +134,7 @@ class Recorder:
         self._came = 0  # spheres at the end of the phase before
         self._void: Callable[[], float] | None = None
         self._looked = 0
+        self._leaving: list[int] = []
         self._reached, self._solid = False, False  # whether the condition holds, whether the bed has lost its void
         print("Step", *self.names)
 
@@ -202,8 +203,31 @@ class Recorder:
         if O.iter == self._end:
             O.step()
 
+    def take_away(self, wall: Sequence[int]) -> None:
+        """Remove a wall that goes at the end of a phase: at once if this step is recorded, else behind its record, so
+        that a frame still shows it. Spheres that come in between do not touch it."""
+        if O.iter > self._end:
+            return remove(wall)
+        self._leaving += wall
+        for bodies, mask in ((self.spheres.ids, 3), (wall, 2)):
+            for k in bodies:
+                O.bodies[k].groupMask = mask
+        return None
+
     def record(self) -> None:
         """Between forces and motion: all that is due at this step."""
+        self._record()
+        for k in self._leaving:  # half of its last force acts, for the half of a step that has gone
+            for i in (i for i in O.bodies[k].intrs() if i.isReal):
+                sphere, side = (i.id2, 1.0) if i.id1 == k else (i.id1, -1.0)
+                force = side * (i.phys.normalForce + i.phys.shearForce)
+                arm = -side * (O.bodies[sphere].shape.radius - 0.5 * i.geom.penetrationDepth) * i.geom.normal
+                O.forces.addF(sphere, -0.5 * force)
+                O.forces.addT(sphere, -0.5 * arm.cross(force))
+        remove(self._leaving)
+        self._leaving.clear()
+
+    def _record(self) -> None:
         if self.means:
             self._sums, self._samples = self._sums + self.on_walls(), self._samples + 1
         if O.iter > 0:
