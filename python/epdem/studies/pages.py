@@ -385,7 +385,7 @@ def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines:
     table = table.sort_values(key)
     x, series = table[key].to_numpy(float), []
     for kind in kinds:
-        k = KINDS.index(kind) if kind else 0
+        k = KINDS.index(kind) if kind else len(KINDS)  # a check may have the name of a column
         y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
-        series.append(Series(kind or "check", x, y, k, DASHES[k] if lines else None, k))
+        series.append(Series(kind or "check", x, y, k, DASHES[k % len(DASHES)] if lines else None, k))
     return series
