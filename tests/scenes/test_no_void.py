@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Presses whose height only the run tells: the run ends with a frame in the row in which the bed has no void."""
 
+import math
+
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
@@ -37,10 +39,12 @@ def pressed(kind, until=None, **output):
 FORCE = {"wall": "lid", "force": "0.9 GN", "after": "1 ms"}
 
 
-def expected_end(p):
-    """The first row in which the lid, whose way is known, is as low as the spheres without void."""
-    steps = np.arange(p.every, p.steps, p.every)
-    return int(steps[0.012 - 2.0 * p.time_step * steps <= SOLID][0])
+def expected_end(p, looks=1):
+    """The first row in which the lid, whose way is known, is as low as the spheres without void; looks: steps between
+    two looks where the lid slows near a force, after which it rests until the row ends."""
+    steps = np.arange(p.every, p.steps, max(p.every, looks))
+    steps = steps if looks == 1 else steps // looks * looks
+    return p.every * math.ceil(steps[0.012 - 2.0 * p.time_step * steps <= SOLID][0] / p.every)
 
 
 ENGINES = {"liggghts": pytest.mark.liggghts, "lammps": needs_lammps, "yade": pytest.mark.yade("module")}
@@ -55,7 +59,8 @@ def test_a_run_ends_with_a_frame_where_a_pressed_bed_has_no_void(tmp_path, engin
     path = write_case(pressed(kind, until, contacts=2), tmp_path)
     for _ in range(2):  # and as it is read again
         outcome = run(path, engine=engine, out=tmp_path / "out")
-        r, end = outcome.results, expected_end(plan(parse(pressed(kind, until))))
+        looks = 100 if kind == "linear" and engine != "yade" else 1
+        r, end = outcome.results, expected_end(plan(parse(pressed(kind, until))), looks)
         assert r.phases["until"].to_list() == ["no void", "no void"] and r.phases["end"].to_list() == [end, end]
         assert r.rows["step"].iloc[-1] == r.particles["step"].iloc[-1] == r.contacts["step"].iloc[-1] == end
         checks = r.tables["checks"].set_index("key")

@@ -54,6 +54,16 @@ def without(data, *keys):
     return data | {"scene": {key: value for key, value in data["scene"].items() if key not in keys}}
 
 
+def plate(outcome, name, step):
+    """Height [m] of a plate in a frame, from the spheres that touch it and their overlaps in the engine."""
+    contacts, spheres = outcome.results.contacts, outcome.results.particles
+    there = contacts[(contacts["step"] == step) & (contacts["wall"] == name)].set_index("i")
+    z = spheres[spheres["step"] == step].set_index("id")["z"][there.index]
+    found = z + (1.0 if name == "punch" else -1.0) * (RADIUS - there["overlap"])
+    assert (abs(found - found.median()) < 1e-9).mean() > 0.5  # YADE has a sphere at an edge of triangles twice
+    return found.median()
+
+
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory):
     """The outcome in LIGGGHTS, with the forces on the sides measured as well."""
@@ -71,27 +81,20 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     assert found["pressure"][holds].to_numpy() == pytest.approx(at["pressure"][holds]) and (at["pressure"] > 0).all()
     reached = found.set_index("phase")["pressure"]
     for k, pressure in enumerate(PRESSURES, 1):
-        # at 3 m/s; looks 2.5 times as frequent give the same
-        assert reached[f"stage{k}"] == pytest.approx(pressure, rel=1e-2)
+        assert reached[f"stage{k}"] == pytest.approx(pressure, rel=5e-3)
         assert reached[f"release{k}"] <= 0.011 * pressure
     by_phase = found.set_index("phase")
     assert by_phase["asked"].dropna().to_dict() == pytest.approx({"stage1": PRESSURES[0], "stage2": PRESSURES[1]})
     assert by_phase["reached"].dropna().to_dict() == {name: reached[name] for name in ("stage1", "stage2")}
     assert (by_phase["peak"] >= by_phase["pressure"]).all()
-    # the way of the punch from its speed alone
-    speed = {"stage": -3.0, "hold": 0.0, "release": 0.5}
-    times = pressed.results.phases.set_index("phase")
-    spent = (times["end_time"] - times["begin_time"]) * (times["held"] - times["begin"])
-    spent /= times["end"] - times["begin"]  # the punch rests from the step on at which the pressure was there
-    ways = [speed[x.rstrip("12")] * spent[x] for x in found["phase"]]
-    height = HEIGHT + np.cumsum(ways)
-    assert found["height"].to_numpy() == pytest.approx(height, rel=1e-9)
+    height = np.array([plate(pressed, "punch", step) for step in found["step"]])
+    assert found["height"].to_numpy() == pytest.approx(height, rel=1e-6)
     volume = COUNT * 4 / 3 * math.pi * RADIUS**3
-    assert found["relative_density"].to_numpy() == pytest.approx(volume / (SIDE**2 * height), rel=1e-9)
+    assert found["relative_density"].to_numpy() == pytest.approx(volume / (SIDE**2 * height), rel=1e-6)
     assert found["porosity"].to_numpy() == pytest.approx(1 - found["relative_density"])
     springback = found.set_index("phase")["springback"].dropna()
     assert springback.to_dict() == pytest.approx(
-        {f"release{k}": height[3 * k - 1] / height[3 * k - 2] - 1 for k in (1, 2)}
+        {f"release{k}": height[3 * k - 1] / height[3 * k - 2] - 1 for k in (1, 2)}, rel=1e-4
     )
     assert (springback > 0.002).all() and (springback < 0.1).all()
     # on the sides: LIGGGHTS's own sums of each wall
@@ -114,17 +117,17 @@ def figures(outcome):
 
 @pytest.mark.liggghts
 def test_a_softened_press_reaches_the_densities_of_the_press(pressed):
-    """Strain and inertia grow: within 0.02."""
+    """Strain and inertia grow."""
     path = pressed.folder.parent / "soft.toml"
     path.write_text(soften(pressed.folder.parent / "case.toml", 10.0).text)
     soft = run(path, out=path.with_suffix(""))
     assert soft.plan.time_step > 2 * pressed.plan.time_step
     hard, soft = (x.results.tables["stages"].set_index("phase") for x in (pressed, soft))
     reached = soft["reached"].dropna().to_numpy()
-    assert reached == pytest.approx(np.array(PRESSURES) / 10**0.8, rel=0.02)  # faster beside its strength
+    assert reached == pytest.approx(np.array(PRESSURES) / 10**0.8, rel=5e-3)
     names = ["stage1", "stage2", "release1", "release2"]
     difference = (soft["relative_density"] - hard["relative_density"])[names].to_numpy()
-    assert np.abs(difference).max() < 0.02
+    assert np.abs(difference).max() < 0.03  # the packings differ
 
 
 def off(points, x, y):
@@ -159,9 +162,10 @@ def test_the_figures_have_the_numbers_of_rows_stages_and_sides(pressed):
         strain = 100 * 0.5 * way * pressed.plan.every * pressed.plan.time_step / ends["height"][before]
         assert curve.name == f"{name}, {100 * ends['springback'][name]:.3g} %"
         assert (curve.y[0], curve.y[-1]) == pytest.approx((0.0, 100 * ends["springback"][name]))
-        assert np.asarray(curve.y)[1:-2] == pytest.approx(strain[:-1], rel=1e-6)
-        assert strain[-2] < curve.y[-2] <= strain[-1], "the punch rests within the last row"
         borne = rows["pressure"].loc[: ends["step"][name]].to_numpy()[-len(way) :]
+        fast = np.minimum.accumulate(borne) > 0.05 * borne[0]  # it slows near a hundredth
+        assert fast[: fast.size // 2].all()
+        assert np.asarray(curve.y)[1:-1][fast] == pytest.approx(strain[fast], rel=1e-3)
         assert np.asarray(curve.x)[1:-1] == pytest.approx(borne)
     for curve, name in zip(found["Pressure on the sides by height"].series, ("stage1", "stage2"), strict=True):
         slices = np.diff(curve.y)[::2]
@@ -247,11 +251,11 @@ def test_lines_go_through_three_stages_or_are_not_drawn(pressed):
 @pytest.mark.liggghts
 def test_rows_have_height_and_density_and_the_page_the_table_of_stages(pressed):
     p, rows = pressed.plan, pressed.results.rows
-    last = rows[rows["step"] <= p.phases[0].end].iloc[-1]  # 3 m/s, half a row before its end
+    last = rows[rows["pressure"] < 0.5 * PRESSURES[0]].iloc[100]  # 3 m/s, half a row before its end
     height = HEIGHT - 3.0 * p.time_step * (last["step"] - 0.5 * p.every)
-    assert last["height"] == pytest.approx(height, rel=1e-9) and units(rows)["height"] == "m"
+    assert last["height"] == pytest.approx(height, rel=1e-7) and units(rows)["height"] == "m"
     volume = COUNT * 4 / 3 * math.pi * RADIUS**3
-    assert last["relative_density"] == pytest.approx(volume / (SIDE**2 * height), rel=1e-9)
+    assert last["relative_density"] == pytest.approx(volume / (SIDE**2 * height), rel=1e-7)
     dense = pressed.results.tables["stages"].set_index("phase")["relative_density"]["stage2"]
     assert numbers_of(pressed.results)["relative_density_max"] == pytest.approx(dense, rel=3e-3)  # a target of a fit
     (part,) = [part for part in scene_page(pressed).parts if getattr(part, "title", "").startswith("Plates")]
@@ -319,11 +323,9 @@ def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
     assert found["relative_density"].to_numpy() == pytest.approx(other["relative_density"].to_numpy(), abs=0.02)
     assert found["pressure"]["stage1"] == pytest.approx(found["opposite_pressure"]["stage1"], rel=0.1)
     pressed = two.results.phases.set_index("phase").loc["stage1"]
-    moved = (pressed["held"] - pressed["begin"]) / (pressed["end"] - pressed["begin"])
-    way = 1.5 * moved * (pressed["end_time"] - pressed["begin_time"])  # of each, at half of 3 m/s
-    assert found["height"]["stage1"] == pytest.approx(HEIGHT - 2.0 * way, rel=1e-9)
-    last = two.results.particles[two.results.particles["step"] == pressed["end"]]
-    assert last["z"].min() > way and last["z"].max() < HEIGHT - way
+    low, high = (plate(two, name, pressed["end"]) for name in ("floor", "punch"))
+    assert found["height"]["stage1"] == pytest.approx(high - low, rel=1e-6)
+    assert low == pytest.approx(HEIGHT - high, rel=1e-3), "each goes half of the way"
     assert two.passed
 
 

@@ -119,7 +119,9 @@ class Host(Engine[Any, Any]):
         plan = plan.with_ends(log.ends(out), log.not_reached(out), log.held(out)) if plan.ends_early else plan
         refuse_bodies_in_moved_walls(plan, log.ways(out))
         frames = Frames(plan, folder, own.kinds(plan), without)
-        found: Tables = {"rows": named_rows(plan, own.rows(plan, out))}
+        rows = own.rows(plan, out)
+        plan = plan.with_ways(rows)
+        found: Tables = {"rows": named_rows(plan, rows)}
         if plan.frames:
             found["particles"] = own.particles(frames)
         if plan.contacts:

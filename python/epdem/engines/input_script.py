@@ -14,7 +14,7 @@ from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
 from ..scenes.limits import TOUCH, PressedBed
 from ..scenes.model import Model, Type
-from ..scenes.plan import PhaseSteps, ScenePlan
+from ..scenes.plan import MISS, SLOWING, PhaseSteps, ScenePlan
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
@@ -112,10 +112,12 @@ def impact_model(plan: Plan) -> Model:
 class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
-    formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes nearer if
-    `nears`. opposite: formula of the force on the wall against a punch. stop: commands that bring the walls to rest.
-    void: formula of the height of the void in a pressed bed, which ends the run at 0; "": no bed is pressed. gone:
-    steps with looks before a continued run.
+    formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
+    `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. halted: formula
+    of whether the condition holds, for fix halt, "": the run stops at each look. kept: first step after a restart file
+    and the share of it, None: the host needs none. opposite: formula of the force on the wall against a punch. stop:
+    commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends the run
+    at 0; "": no bed is pressed. gone: steps with looks before a continued run.
     """
 
     first: int
@@ -127,6 +129,9 @@ class StopCondition:
     look: int = 0
     every: int = 0
     nears: bool = False
+    missing: str = ""
+    halted: str = ""
+    kept: tuple[int, str] | None = None
     opposite: str = ""
     stop: tuple[str, ...] = ()
     gone: int = 0
@@ -155,6 +160,7 @@ def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
 def row_words(p: ScenePlan) -> Iterator[str]:
     """Words of the rows beside the strain: power; of walls three components of the force, of meshes six."""
     yield from (f"f_{word}" for word, column in log.ROWS.items() if column in p.row_columns)
+    yield from (f"v_way{n}" for n in range(1, len(p.ways) + 1))
     for n, name in enumerate(p.measured_walls, 1):
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 
@@ -165,7 +171,15 @@ def first_look(p: ScenePlan, run: PhaseSteps) -> int:
     return min(run.steps, p.every * rows)
 
 
-MISS = 2e-3  # of a limit, by which a force that comes near it may fall short of it
+def ended_at(run: PhaseSteps) -> list[str]:
+    """The comparisons with which a force on a wall ends a phase; a wall that slows stays near its force."""
+    assert run.case.condition is not None
+    low, high = (number(share * run.case.condition.limit) for share in (1.0 - MISS, 1.0 + MISS))
+    if run.case.condition.force:
+        return [f">= {low}", *([] if run.slows is None else [f"<= {high}"])]
+    return [f"<= {high}"]
+
+
 BORNE = 0.05  # of the pressure of a stage, that the opposite wall bears at least
 LOOK = 100  # steps between two looks at a condition
 
@@ -176,11 +190,15 @@ def stop_condition(
     place: Callable[[PressedBed], str],
     force: Callable[[str, int], str],
     stop: Sequence[str] = (),
+    *,
+    halts: bool = False,
+    before: Callable[[str, int], str] | None = None,
 ) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS: by its condition, or by a bed without void.
 
     None: it does not. place: formula of the height that a pressed bed has. force: word of a component of the force
-    on a wall at a step. stop: commands that bring the walls of the phase to rest.
+    on a wall at a step. stop: commands that bring the walls of the phase to rest. halts: whether the host has fix halt.
+    before: word of such a component, of a wall that slows, at the step before.
     """
     void = next((f"{place(bed)}-{number(bed.solid_height)}" for bed in p.pressed if bed.phase == run.name), "")
     until = run.case.condition
@@ -197,27 +215,38 @@ def stop_condition(
         sign = ">=" if until.force else "<="
     else:
         name, stages, opposite = until.wall or "", p.scene.stages, ""
-        formula = "sqrt(" + "+".join(f"{force(name, k)}*{force(name, k)}" for k in (1, 2, 3)) + ")"
+        axis = None
         if stages and name == stages.wall:
             axis = 1 + "xyz".index(next(w.axis for w in p.scene.wall if w.name == name and isinstance(w, PlateWall)))
-            formula, opposite = f"abs({force(name, axis)})", f"abs({force(stages.against, axis)})"
-            if until.force:  # a sphere that strikes the punch alone is no pressure
-                formula += f"*({opposite}>={number(BORNE * until.limit)})"
-        sign, near = (">=", 1.0 - MISS) if until.force else ("<=", 1.0 + MISS)
+            opposite = f"abs({force(stages.against, axis)})"
+
+        def on_wall(word: Callable[[str, int], str]) -> str:
+            squares = (f"{word(name, k)}*{word(name, k)}" for k in (1, 2, 3))
+            return f"abs({word(name, axis)})" if axis else f"sqrt({'+'.join(squares)})"
+
+        # a sphere that strikes the punch alone is no pressure
+        borne = f"*({opposite}>={number(BORNE * until.limit)})" if opposite and until.force else ""
+        share, words = f"{on_wall(before or force)}/{number(until.limit)}", ended_at(run)
+        missing = f"({f'1-{share}' if until.force else f'{share}-1'})/{SLOWING}"
         return StopCondition(
             first=first,
             rows=(run.steps - first) // p.every,
-            formula=formula,
-            condition=f"{sign} {number(near * until.limit)}",
+            formula=on_wall(force) + borne,
+            condition=" && ".join(f"${{found}} {x}" for x in words),
             void=void,
             limit=until.limit,
-            look=min(LOOK, p.every),
+            look=LOOK if run.slows is not None else min(LOOK, p.every),
             every=p.every,
-            nears=True,
+            nears=run.slows is None,
+            missing="" if run.slows is None else missing,
+            kept=(-1, "1.0") if before and p.restarts else None,
+            halted="*".join(f"(v_awaited{x.replace(' ', '')})" for x in words)
+            if halts and run.slows is not None
+            else "",
             opposite=opposite,
             stop=tuple(stop),
         )
-    rows, condition = (run.steps - first) // p.every, f"{sign} {number(until.limit)}"
+    rows, condition = (run.steps - first) // p.every, f"${{found}} {sign} {number(until.limit)}"
     return StopCondition(first, rows, formula, condition, void, until.limit, p.every, p.every)
 
 

@@ -24,7 +24,7 @@ ROWS = {
     "ratio[1]": columns.STRAINS[0],
     "ratio[2]": columns.STRAINS[1],
 }
-_LOAD = re.compile(r"load(\d+)\[(\d)\]")
+_LOAD, _WAY = re.compile(r"load(\d+)\[(\d)\]"), re.compile(r"(?:v_)?way(\d+)")
 _TOTAL = re.compile(r" - a total of (\d+) particle templates ")
 
 
@@ -52,11 +52,13 @@ def rows(log: Path) -> pd.DataFrame:
 
 def _column(p: ScenePlan, word: str) -> str | None:
     """The column of a word of the rows, with LAMMPS's f_ or without, which in YADE is the column; None: no column."""
+    if way := _WAY.fullmatch(word):
+        return p.way_columns[int(way[1]) - 1]
     word = word.removeprefix("f_")
     if load := _LOAD.fullmatch(word):
         return f"{p.measured_walls[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
     loads = {f"{wall}_{load}" for wall in p.measured_walls for load in columns.LOADS}
-    return ROWS.get(word, word if word in {*ROWS.values(), *loads} else None)
+    return ROWS.get(word, word if word in {*ROWS.values(), *loads, *p.way_columns} else None)
 
 
 def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.DataFrame:

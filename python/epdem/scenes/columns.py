@@ -59,7 +59,7 @@ def units(table: pd.DataFrame) -> dict[str, str]:
     """The unit of each column of a table that has one; `attrs["units"]` has the units of measures."""
     found: dict[str, str] = {}
     for name in map(str, table):
-        dent = "m" if name.startswith("delta_max_") else None  # of a flat wall NAME
+        dent = "m" if name.startswith("delta_max_") or name[:-1].endswith("_way_") else None  # of a wall NAME
         unit = table.attrs.get("units", {}).get(name) or unit_of_load(name) or dent
         if unit := unit or UNITS.get(name):
             found[name] = unit
@@ -69,7 +69,7 @@ def units(table: pd.DataFrame) -> dict[str, str]:
 def columns_of_rows(p: ScenePlan) -> set[str]:
     """The names of the columns that the rows of a scene have."""
     loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
-    named = {row.name for row in p.scene.row}
+    named = {row.name for row in p.scene.row} | {*p.way_columns}
     return {"step", "time", "particles", "kinetic_energy", *STRAINS, *p.row_columns, *named, *loads}
 
 
@@ -126,12 +126,8 @@ def place(p: ScenePlan, wall: str, axis: int, time: Array) -> Array:
     """Coordinate [m] of a wall along an axis at times [s], each the middle of the interval that a force is the mean
     of."""
     found = np.full(len(time), p.triangles[wall][0, 0, axis])
-    begin = 0.0
-    ends = p.time_at(np.array([phase.end for phase in p.phases]))
-    for phase, end, rest in zip(p.phases, ends, p.rest_times, strict=True):
-        last = None if phase is p.phases[-1] and rest == end else rest
-        found += phase.velocity(wall)[axis] * (np.clip(time, begin, last) - begin)
-        begin = end
+    for phase, seconds in zip(p.phases, p.lasted(time), strict=True):
+        found += phase.velocity(wall)[axis] * seconds
     return found
 
 

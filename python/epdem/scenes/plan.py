@@ -42,6 +42,10 @@ ROUNDING = 1e-9  # of a number of steps
 MISSED = 1e-4  # of the duration of a phase with a given time step, which ends with a row
 MORE_ROWS = 10  # times the requested number, so that these phases end with a row
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
+MISS = 2e-3  # of a limit, by which a force that comes near it may fall short of it
+# of a limit: a wall whose force comes so near slows in proportion to what is left; beyond the limit it goes back, ten
+# times slower, so that it does not swing where a step alone changes the force by as much
+SLOWING = 0.1
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,8 @@ class Phase:
     or one with which the duration is a whole number of rows.
 
     held: the step at which `until` held, from which on its walls rest; None: before a run, or without. value, opposite:
-    what was awaited at that step, and of a press the force [N] on the wall against the punch.
+    what was awaited at that step, and of a press the force [N] on the wall against the punch. slowed: of a phase that
+    slows, steps of rows, and how long [s] its walls would have moved at full speed to come as far; before a run empty.
     gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
     or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
     """
@@ -63,6 +68,15 @@ class Phase:
     held: int | None = None
     value: float = math.nan
     opposite: float = math.nan
+    slowed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+
+    @property
+    def slows(self) -> int | None:
+        """Axis of the largest velocity of the wall whose force ends the phase: all its walls slow as the force comes
+        near, see SLOWING; None: no such wall moves, or not all motions are linear."""
+        condition = self.case.condition
+        velocity = np.abs(self.velocity(condition.wall or "")) if condition and self.stops else np.zeros(3)
+        return int(velocity.argmax()) if velocity.any() else None
 
     @property
     def stops(self) -> bool:
@@ -222,6 +236,31 @@ class ScenePlan:
             phases.append(replace(phase, end=end, reached=word, held=step, value=value, opposite=opposite))
         return replace(self, phases=tuple(phases))
 
+    def with_ways(self, rows: pd.DataFrame) -> "ScenePlan":
+        """The plan of a run, with the ways of walls that slowed, from columns WALL_way_AXIS [m] of its rows."""
+        phases, begin = [], 0
+        for phase in self.phases:
+            k, condition = phase.slows, phase.case.condition
+            if k is not None and condition:
+                part = rows[rows["step"].between(begin, phase.end)]
+                way = part[f"{condition.wall}_way_{'xyz'[k]}"].to_numpy()
+                seconds = (way - way[:1]) / phase.velocity(condition.wall or "")[k]
+                phase = replace(phase, slowed=(tuple(part["step"].tolist()), tuple(seconds.tolist())))
+            phases.append(phase)
+            begin = phase.end
+        return replace(self, phases=tuple(phases))
+
+    @property
+    def ways(self) -> list[tuple[str, int]]:
+        """(wall, axis) of the ways that a run measures, because the walls slow."""
+        found = [(x.case.condition.wall, k) for x in self.phases if x.case.condition and (k := x.slows) is not None]
+        return [(wall, k) for wall, k in dict.fromkeys(found) if wall]
+
+    @property
+    def way_columns(self) -> list[str]:
+        """The columns of the rows that have these ways [m]."""
+        return [f"{wall}_way_{'xyz'[k]}" for wall, k in self.ways]
+
     def frame_steps(self, every: int) -> list[int]:
         """The steps of frames written every `every` steps and at the end of a phase, in recorded phases only."""
         begins = [0, *(phase.end for phase in self.phases)]
@@ -257,16 +296,24 @@ class ScenePlan:
         lengths = np.diff(ends) * [phase.time_step for phase in self.phases]
         return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
 
-    @property
-    def rest_times(self) -> np.ndarray:
-        """Times [s] from which on the walls that move in each phase rest: its end, or when its condition held."""
-        return self.time_at(np.array([p.held if p.stops and p.held is not None else p.end for p in self.phases]))
+    def lasted(self, times: FloatArray) -> list[FloatArray]:
+        """How long [s] the motions of each phase have lasted at times [s]: until its end, or its condition held. Of
+        walls that slowed the time in which they would have come as far at full speed."""
+        found, begin = [], 0.0
+        rests = self.time_at(np.array([p.held if p.stops and p.held is not None else p.end for p in self.phases]))
+        for phase, rest, end in zip(self.phases, rests, self.phase_table["end_time"], strict=True):
+            last = None if phase is self.phases[-1] and rest == end else rest
+            seconds = np.clip(times, begin, last) - begin
+            if phase.slowed[0]:
+                seconds = np.interp(times, self.time_at(np.array(phase.slowed[0])), phase.slowed[1])
+            found.append(seconds)
+            begin = end
+        return found
 
     def motions_until(self, step: int) -> list[tuple[dict[str, Move], float]]:
-        """The motions of each phase and how long [s] the phase has lasted at a step."""
-        table, now = self.phase_table, float(self.time_at(np.array([step]))[0])
-        lasted = (np.minimum(self.rest_times, now) - table["begin_time"]).clip(lower=0.0)
-        return [(phase.moves, float(seconds)) for phase, seconds in zip(self.phases, lasted, strict=True)]
+        """The motions of each phase and how long [s] they have lasted at a step."""
+        lasted = self.lasted(self.time_at(np.array([step])))
+        return [(phase.moves, float(seconds[0])) for phase, seconds in zip(self.phases, lasted, strict=True)]
 
     @property
     def samples(self) -> int:

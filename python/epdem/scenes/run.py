@@ -189,7 +189,7 @@ def _as_run(p: ScenePlan, tables: Tables) -> ScenePlan:
         phases["held"].astype(int), phases["value"].astype(float), phases["opposite"].astype(float), strict=True
     )
     held = {x.name: at for x, at in zip(p.phases, looked, strict=True) if x.case.condition}
-    return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)), held)
+    return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)), held).with_ways(tables["rows"])
 
 
 def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:

@@ -148,7 +148,7 @@ def _numbers(values: Iterable[float]) -> str:
 def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
     """Changes of a wall in a phase: component of the way [m] or turn [rad], and its formula of T.
 
-    T is the time of the motion [s], of a wall that a force drives its way [m].
+    T is the time of the motion [s], of a wall that slows as if it did not; of a wall that a force drives its way [m].
     """
     found: dict[str, str] = {}
     move: Move | None = phase.moves.get(name)
@@ -194,6 +194,8 @@ def _motion_words(p: ScenePlan, name: str) -> str:
 def _begin(p: ScenePlan, name: str, number: int) -> int:
     """The number of the phase in which a wall got the motion that it has in the phase of a number."""
     moves = [phase.moves.get(name) for phase in p.phases]
+    if moves[number] and p.phases[number].slows is not None:
+        return number
     while number and moves[number] == moves[number - 1] and not (moves[number] and p.phases[number - 1].stops):
         number -= 1
     return number
@@ -204,20 +206,30 @@ def _state(p: ScenePlan, name: str, number: int) -> dict[str, str]:
     keys, id = _changing(p, name), wall_id(name)
     places = [f"{id}_{key}0" for key in keys] if _begin(p, name, number) else []
     found = dict.fromkeys([f"{id}_begin", *places] if keys else [], "equal")
-    return found | ({f"{id}_way": "internal"} if isinstance(p.phases[number].moves.get(name), PressMove) else {})
+    return found | ({f"{id}_way": "internal"} if _controlled(p.phases[number], name) else {})
+
+
+def _controlled(phase: Phase, name: str) -> bool:
+    """Whether a force controls the speed of a wall: that drives it, or near which it slows."""
+    move = phase.moves.get(name)
+    return isinstance(move, PressMove) or (move is not None and phase.slows is not None)
 
 
 def _formulas(p: ScenePlan, name: str, number: int) -> Iterator[str]:
     """Commands that tie a wall to its motion in a phase."""
     id, phase = wall_id(name), p.phases[number]
     move, rates = phase.moves.get(name), _rates(p, name, phase)
-    T = f"v_{id}_way" if isinstance(move, PressMove) else f"(time-v_{id}_begin)"
+    time = f"(time-v_{id}_begin)"
+    way = f"v_{id}_way" if _controlled(phase, name) else time
     for key in _changing(p, name):
-        formula = rates[key].replace("T", T) if key in rates else ""
+        formula = rates[key].replace("T", time if key == "turn" else way) if key in rates else ""
         terms = [f"v_{id}_{key}0"] * (_begin(p, name, number) > 0) + [formula] * bool(formula)
         yield f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}"
     if isinstance(move, PressMove):
         yield from _servo(id, move)
+    elif _controlled(phase, name):
+        yield "variable share equal 1.0"
+        yield f"fix press_{id} all controller 1 1 -1 0 0 v_share 0 {id}_way"
 
 
 def motions(p: ScenePlan, number: int) -> list[str]:
@@ -227,12 +239,12 @@ def motions(p: ScenePlan, number: int) -> list[str]:
         keys, id = _changing(p, name), wall_id(name)
         if not keys or _begin(p, name, number) != number:
             continue
-        if number and isinstance(p.phases[number - 1].moves.get(name), PressMove):
+        if number and _controlled(p.phases[number - 1], name):
             found.append(f"unfix press_{id}")
         if number:  # the place so far, before the time of the motion begins anew
             found += [f"variable {id}_{key}0 equal $(v_{id}_{key}:%.17g)" for key in keys]
         found.append(f"variable {id}_begin equal $(time:%.17g)")
-        if isinstance(p.phases[number].moves.get(name), PressMove):
+        if _controlled(p.phases[number], name):
             found.append(f"variable {id}_way internal 0.0")
         found += _formulas(p, name, number)
     return found

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
-from ...case.walls import LinearMove, VibrateMove
+from ...case.walls import LinearMove
 from ...errors import CaseError
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
@@ -211,7 +211,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         insertions=insertions(p),
         phases=commands,
-        open=p.ends_early or any(isinstance(x, VibrateMove) for phase in p.phases for x in phase.moves.values()),
+        open=p.ends_early or any(phase.speeds for phase in commands),
         work_words=tuple(WORKS[name] for name in p.works),
         history=history(m),
         wall_history=history(m, wall=True),

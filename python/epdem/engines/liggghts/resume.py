@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene in LIGGGHTS that continues from a restart file."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,12 @@ def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[In
             yield replace(f, fill=replace(f.fill, phase=names[number]))
 
 
+def _share(out: Path, step: int) -> str:
+    """The share of its speed that a wall near its force had in the step after a restart file, as the run printed it."""
+    found = re.findall(rf"^share_at_{step}:(\S+)$", out.read_text(encoding="utf-8", errors="replace"), re.M)
+    return found[-1] if found else "1.0"
+
+
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
@@ -36,7 +43,10 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
         at_once = [f for f in d.insertions if f.fill.rate is None and f.fill.phase == part.run.name]
         comes = step == begin and bool(part.bodies or at_once)
         gone = step - begin
-        rest = replace(part, steps=part.steps - gone, stop=later(part.stop, gone, p.every))
+        stop = later(part.stop, gone, p.every)
+        if stop and stop.kept and gone:
+            stop = replace(stop, kept=(step + 1, _share(folder / launcher.OUT, step)))
+        rest = replace(part, steps=part.steps - gone, stop=stop)
         d = replace(d, phases=(*d.phases[:number], rest, *d.phases[number + 1 :]))
     path = folder / "in.resume"
     going_on = tuple(_going_on(d, number, log.inserted(folder / launcher.OUT, step)))

@@ -80,7 +80,7 @@ class DeckPhase:
     steps: remaining ones. gates: planes that come with the phase. bodies: file of the single spheres that come with it,
     "": none do; places: formulas of the spheres that lie in their places; driven: walls that a force drives, words of
     their ways. power: formula of the power of what moves.
-    speeds: (variable, formula) of walls that vibrate or that a force drives.
+    speeds: (variable, formula) of walls that vibrate, that a force drives, or that slow near a force.
     restart_commands: where a restart file is due.
     """
 
@@ -171,6 +171,10 @@ def insertions(p: ScenePlan) -> tuple[InsertFix, ...]:
     return tuple(result)
 
 
+# where a restart file is due: the share of its speed that a wall near its force has in the next step
+KEEP = ("variable kept equal ${share}", "variable kept_at equal ${now}+1", "print share_at_${now}:${share}")
+
+
 def _words(*vectors: Sequence[float]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
 
@@ -202,16 +206,16 @@ def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
     return tuple(found)
 
 
-def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
+def _motion(p: ScenePlan, name: str, move: Move, phase: Phase) -> tuple[str, str]:
     wall = decks.wall_id(name)
     match move:
-        case LinearMove():
+        case LinearMove() if phase.slows is None:
             words = f"linear {_words(move.velocity)}"
         case RotateMove():
             axis = _words(tuple(math.copysign(1.0, move.rate) * x for x in move.axis))
             period = decks.number(2 * math.pi / abs(move.rate))
             words = f"rotate origin {_words(move.origin)} axis {axis} period {period}"
-        case VibrateMove() | PressMove():
+        case LinearMove() | VibrateMove() | PressMove():
             words = "linear/variable " + " ".join(f"v_speed_{axis}_{name}" for axis in "xyz")
     return f"fix move_{name} all move/mesh mesh {wall} {words}", f"unfix move_{name}"
 
@@ -233,16 +237,22 @@ def _force(p: ScenePlan, name: str, k: int) -> str:
     return f"c_load{1 + p.measured_walls.index(name)}[{k}]"
 
 
+def _before(name: str, k: int) -> str:
+    """A component of the force on a wall that slows at the step before."""
+    return f"f_before_{name}[{k}]"
+
+
 def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     """The phases of a scene."""
     gates = {w.name: primitive(p, w, force=bool(p.contacts)) for w in p.scene.gates}
     found: list[DeckPhase] = []
     with_power = "wall_power" in p.row_columns
     for run in p.phase_steps:
-        motions = {name: _motion(p, name, move) for name, move in run.moves.items()}
+        motions = {name: _motion(p, name, move, run) for name, move in run.moves.items()}
         before, after = run.before, run.after
         rests = before is not None and before.stops  # all walls
-        new = [name for name, x in run.moves.items() if before is None or rests or before.moves.get(name) != x]
+        anew = before is None or rests or run.slows is not None
+        new = [name for name, x in run.moves.items() if anew or (before and before.moves.get(name) != x)]
         stop = [end for _, end in motions.values()] if run.stops else []
         if stop and with_power:
             still = replace(run, case=run.case.model_copy(update={"move": []}))
@@ -262,8 +272,9 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             places=taken_places(p, run.name, "r"),
             driven=tuple((name, _way(p, name)) for name in p.driven_before(run.name)),
             power=power(p, run) if with_power else "",
-            speeds=(*_vibrations(before, run, new), *_drives(run)),
-            stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop),
+            speeds=(*_vibrations(before, run, new), *_drives(run), *_slowed(run)),
+            stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop, before=_before),
+            restart_commands=(*(KEEP if run.slows is not None else ()), *WRITE_RESTART),
         )
         found.append(part)
     return tuple(found)
@@ -298,6 +309,16 @@ def _drives(phase: Phase) -> Iterator[tuple[str, str]]:
             yield f"speed_{name}", press_speed(f"v_force_{name}", move)
             for axis, u in zip("xyz", move.direction, strict=True):
                 yield f"speed_{axis}_{name}", f"v_speed_{name}*{decks.number(u)}" if u else "0.0"
+
+
+def _slowed(phase: Phase) -> Iterator[tuple[str, str]]:
+    """Variables of each wall that slows near a force: its speeds [m/s], of which it has a share."""
+    if phase.slows is None:
+        return
+    yield "share", "1.0"
+    for name in phase.moves:
+        for axis, v in zip("xyz", phase.velocity(name), strict=True):
+            yield f"speed_{axis}_{name}", f"{decks.number(v)}*v_share" if v else "0.0"
 
 
 def bodies_file(phase: str) -> str:
@@ -346,7 +367,8 @@ def power(p: ScenePlan, phase: Phase) -> str:
             omega = decks.number(move.omega * phase.time_step)
             force_times_speed = "+".join(_times(id, 1, [move.omega * a for a in move.amplitude]))
             terms.append(f"({force_times_speed})*cos(${{angle_{name}}}+(step-${{begin_{name}}})*{omega})")
-    return f"-({'+'.join(terms)})" if terms else "0.0"
+    share = "*v_share" if phase.slows is not None and terms else ""
+    return f"-({'+'.join(terms)}){share}" if terms else "0.0"
 
 
 def stl_text(name: str, triangles: np.ndarray) -> str:

@@ -15,8 +15,8 @@ from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.meshes import spans, surface_rotation
-from ...scenes.plan import Phase, PhaseSteps, ScenePlan
-from ..input_script import BORNE, MISS, bed_height, first_look, torque_origin
+from ...scenes.plan import SLOWING, Phase, PhaseSteps, ScenePlan
+from ..input_script import BORNE, bed_height, ended_at, first_look, torque_origin
 
 EDGES = (
     "walls of triangles ({}): YADE counts a sphere that touches an edge once for each triangle there, so that its "
@@ -164,7 +164,8 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 @dataclass(frozen=True)
 class Stop:
     """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the
-    force on the opposite wall; limit: of the value, 0 where rows alone are looked at; walls: that rest from then on."""
+    force on the opposite wall; limit: of the value, 0 where rows alone are looked at; walls: that rest from then on;
+    missing: formula of the missing force over that at which the walls slow, "": they do not."""
 
     value: str
     condition: str
@@ -172,6 +173,7 @@ class Stop:
     opposite: str = ""
     limit: float = 0.0
     walls: tuple[str, ...] = ()
+    missing: str = ""
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
@@ -185,21 +187,18 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
         return Stop(energy, f"< {limit}", after)
     if until.count is not None:
         return Stop('row["particles"]', f"<= {limit}", after)
-    value, opposite, stages = (
-        f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])',
-        "",
-        p.scene.stages,
-    )
+    value, opposite = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])', ""
+    stages = p.scene.stages
     if stages and until.wall == stages.wall:
         axis = next(w.axis for w in p.scene.wall if w.name == stages.wall and isinstance(w, PlateWall))
         value, opposite = (f'abs(row["{name}_force_{axis}"])' for name in (stages.wall, stages.against))
-        if until.force:  # a sphere that strikes the punch alone is no pressure
-            value += f" * ({opposite} >= {decks.number(BORNE * until.limit)})"
+    missing = f"(1 - {value} / {limit}) / {SLOWING}" if until.force else f"({value} / {limit} - 1) / {SLOWING}"
+    if opposite and until.force:  # a sphere that strikes the punch alone is no pressure
+        value += f" * ({opposite} >= {decks.number(BORNE * until.limit)})"
     if not run.stops:  # what shakes or is driven: the mean of a row
         return Stop(value, f"{'>=' if until.force else '<='} {limit}", after)
-    near = until.limit * (1.0 - MISS if until.force else 1.0 + MISS)
-    condition = f"{'>=' if until.force else '<='} {decks.number(near)}"
-    return Stop(value, condition, after, opposite, until.limit, tuple(run.moves))
+    condition = " and value ".join(ended_at(run))
+    return Stop(value, condition, after, opposite, until.limit, tuple(run.moves), missing * (run.slows is not None))
 
 
 def void(p: ScenePlan, phase: str) -> str:

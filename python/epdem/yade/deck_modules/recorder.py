@@ -88,6 +88,7 @@ class Recorder:
               0: none
     tables    steps between two tables contacts.STEP.npy: see `contact_table`; 0: none
     loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
+    ways      (column, body, axis) of walls whose way [m] is in the rows
     moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
     works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
     triangles of walls, in files triangles.STEP.npy beside the frames; none: no such files
@@ -107,6 +108,7 @@ class Recorder:
         spins: bool = False,
         tables: int = 0,
         loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
+        ways: Sequence[tuple[str, int, int]] = (),
         moving: Sequence[int] = (),
         works: Sequence[str] = (),
         triangles: Sequence[tuple[Sequence[int], float]] = (),
@@ -114,6 +116,7 @@ class Recorder:
         self.folder, self.spheres, self.law, self.low, self.high = folder, spheres, law, low, high
         self.every, self.frames, self.spins, self.tables = every, frames, spins, tables
         self.gravity = np.array([0.0, 0.0, fall])
+        self.ways = [(column, k, axis, O.bodies[k].state.pos[axis]) for column, k, axis in ways]
         self.loads, self.moving, self.works, self.triangles = loads, moving, works, Triangles(triangles)
         if works:
             O.trackEnergy = True
@@ -123,13 +126,15 @@ class Recorder:
         self._before: dict[int, Any] = {}  # velocities of the last step of bodies of walls that change theirs
         self.starts = PyRunner(command="recorder.start()", iterPeriod=1, initRun=True, dead=True)  # an engine
         self.strain()  # from now on
-        self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
+        self.names = ["particles", "kinetic_energy", *STRAINS, *(way[0] for way in self.ways), *self.means]
         self.values: dict[str, float] = {}  # of the last row
         self._begin, self._end, self._records, self._recorded = 0, 0, False, False
         self._until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None  # of this phase
         self._opposite: Callable[[dict[str, float]], float] | None = None
         self._limit = 0.0
         self._stops: Sequence[int] | None = None
+        self._missing: Callable[[dict[str, float]], float] | None = None
+        self._full: list[Any] | None = None  # velocities of walls that slow
         self._held, self._value, self._other = -1, 0.0, 0.0  # step at which the condition held, what it held at
         self._came = 0  # spheres at the end of the phase before
         self._void: Callable[[], float] | None = None
@@ -148,13 +153,15 @@ class Recorder:
         until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None,
         opposite: Callable[[dict[str, float]], float] | None = None,
         stops: Sequence[int] | None = None,
+        missing: Callable[[dict[str, float]], float] | None = None,
         limit: float = 0.0,
         after: int = 0,
         void: Callable[[], float] | None = None,
     ) -> None:
         """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, which
         is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
-        that rest from then on, where `look` looks at the condition, without it each row does; limit: of the value, near
+        that rest from then on, where `look` looks at the condition, without it each row does; missing: force over that
+        at which these bodies slow, each by the same share, without it they do not; limit: of the value, near
         which looks are frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame
         and a table.
 
@@ -164,6 +171,7 @@ class Recorder:
         self._begin, self._end = self._end, self._end + steps
         self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
         self._opposite, self._stops, self._limit, self._held = opposite, stops, limit, -1
+        self._missing, self._full = missing, None
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
@@ -254,9 +262,23 @@ class Recorder:
         steps = min(LOOK, int(self.every - O.iter % self.every))
         if self._stops is None or self._held >= 0 or O.iter <= self._looked:
             return steps
-        self._look(dict(zip(self.means, self.on_walls().tolist(), strict=True)))
+        row = dict(zip(self.means, self.on_walls().tolist(), strict=True))
+        if self._missing:
+            if O.iter % LOOK == 0:
+                self._look(row)
+            missing = min(1.0, max(-1.0, self._missing(row)))
+            self._slow(missing if missing > 0.0 else 0.1 * missing)
+            return 1
+        self._look(row)
         left = abs(1.0 - self._value / self._limit)
         return steps if left >= 0.5 else max(1, min(steps, int(0.005 * (O.iter - self._looked) * left / (1.0 - left))))
+
+    def _slow(self, share: float) -> None:
+        """Give the walls of the phase a share of their speed."""
+        states = [O.bodies[k].state for k in self._stops or ()]
+        self._full = self._full or [1.0 * s.vel for s in states]  # copies
+        for s, velocity in zip(states, self._full, strict=True):
+            s.vel = share * velocity if self._held < 0 else 0.0 * velocity
 
     def _look(self, row: dict[str, float]) -> None:
         """Whether the condition of the phase holds, in which case its walls rest."""
@@ -317,7 +339,8 @@ class Recorder:
         v = self.velocities()[there]
         energy = float(0.5 * self.spheres.table[there, 3] @ (v * v).sum(axis=1))
         means = self._sums / max(1, self._samples)
-        found = [len(v), energy, *self.strain(), *means.tolist()]
+        ways = (O.bodies[k].state.pos[axis] - start for _, k, axis, start in self.ways)
+        found = [len(v), energy, *self.strain(), *ways, *means.tolist()]
         self.values = dict(zip(self.names, found, strict=True))
         self._sums, self._samples = np.zeros(len(self.means)), 0
         print(f" {O.iter}" + "".join(f" {x:.10g}" for x in found), flush=True)
