@@ -560,3 +560,16 @@ def test_the_time_step_of_a_press_does_not_follow_the_rows():
         found.append([phase.time_step for phase in p.phases if phase.case.condition])
         assert not [warning for warning in planned_warnings(p) if "its time_step is given" in warning]
     assert found[0] == found[1] and len({*found[0]}) == 1
+
+
+@pytest.mark.parametrize("engine", [ENGINES[0], ENGINES[2]])
+def test_a_stage_has_its_pressure_and_a_density_that_does_not_follow_the_rows(engine, tmp_path):
+    """Looks and slowing plates do not know the rows, so that the run up to the stage is the same to the bit."""
+    found = []
+    for rows in (100, 700):
+        data = without(press(stages=["10 MPa"]), "hold")
+        data["output"] |= {"rows": rows, "energy": False, "color": "speed"}
+        outcome = run(write_case(data, tmp_path / f"{rows}"), engine, out=tmp_path / f"{rows}/out")
+        found.append(outcome.results.stages.set_index("phase").loc["stage1"])
+    assert abs(found[0]["error"]) < 5e-3 and found[0]["reached"] == found[1]["reached"]
+    assert found[0]["relative_density"] == pytest.approx(found[1]["relative_density"], rel=1e-6)
