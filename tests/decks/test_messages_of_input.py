@@ -119,8 +119,8 @@ def refused(base: str | dict, changes: dict, says: str, folder: Path) -> None:
         ("steel_wall", {"output": {"rows": 3}}, "output: unknown key of an impact; it belongs to scenes"),
         (
             "oblique_steel",
-            {"contact.tangential_restitution": 0.5},
-            "contact.tangential_restitution = 0.5, unknown key of an impact; it belongs to scenes",
+            {"contact.wall_friction": 0.5},
+            "contact.wall_friction = 0.5, unknown key of an impact; it belongs to scenes",
         ),
     ],
 )

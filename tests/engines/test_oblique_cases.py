@@ -2,6 +2,7 @@
 """Oblique impacts as cases: input, theory, and every engine beside it."""
 
 import copy
+import math
 import re
 from pathlib import Path
 
@@ -129,6 +130,51 @@ def test_liggghts_takes_walls_only(tmp_path):
         outcome(tmp_path, ["liggghts"], **changes)
 
 
+HOSTS = [pytest.param("lammps", marks=needs_lammps), pytest.param("yade", marks=pytest.mark.yade("module"))]
+
+
+def slip_with_dashpot(x, e, steps=20000):
+    """psi_2 over psi_1 of Hertz contacts with one spring and a dashpot beside it; mu F limits their sum."""
+    beta = -math.log(e) / math.hypot(math.log(e), math.pi)
+    speed, R, m = x.speed, x.R_star, x.m_star
+    dt = float(predict(x).contact_time[0]) / steps
+    d, v, s, F, T = (np.zeros(speed.size) for _ in range(5))
+    v, slip = -speed, speed * np.tan(x.oblique.angle)
+    first = slip
+    for _ in range(steps + 1):
+        v, slip = v + 0.5 * dt * F / m, slip - 1.75 * dt * T / m
+        d, s = d - dt * v, s + dt * slip
+        a = np.sqrt(R * np.maximum(d, 0.0))
+        F, k_t = 4 / 3 * x.E_star * a * np.maximum(d, 0.0), 8 * x.G_star * a
+        spring = np.clip(k_t * s, -MU * F, MU * F)
+        s = np.divide(spring, k_t, out=0 * s, where=k_t > 0)
+        T = np.clip(spring + 2 * math.sqrt(5 / 6) * beta * np.sqrt(k_t * m) * slip, -MU * F, MU * F)
+        v, slip = v + 0.5 * dt * F / m, slip - 1.75 * dt * T / m
+    return slip / first
+
+
+DASHPOTS = [pytest.param("liggghts", marks=pytest.mark.liggghts), *HOSTS]
+
+
+@pytest.mark.parametrize("host", DASHPOTS)
+def test_a_tangential_dashpot_of_a_scene_is_that_of_an_impact(host, tmp_path):
+    contact = {"friction": MU, "tangential": "history", "tangential_restitution": 0.3}
+    changes = {"law": {"name": "hertz"}, "angles": ["5 deg", "15 deg", "30 deg", "50 deg"], "speeds": ["0.1 m/s"]}
+    found = outcome(tmp_path, [host], contact=contact, check={}, **changes)
+    x = experiment(cases.parse(data(contact=contact, **changes)))
+    without = experiment(cases.parse(data(contact=contact | {"tangential_restitution": 1.0}, **changes)))
+    rows, expected = found.results.comparison, slip_with_dashpot(x, 0.3)
+    assert (rows["psi_2"] / rows["psi_1"]).to_numpy() == pytest.approx(expected, abs=0.01)
+    assert np.abs(expected - slip_with_dashpot(without, 1.0)).max() > 0.1
+    assert any("psi_2 is not checked" in w for w in found.warnings)
+
+
+def test_an_engine_without_the_tangential_dashpot_names_those_that_have_it(tmp_path):
+    contact = {"friction": MU, "tangential_restitution": 0.3}
+    with pytest.raises(CaseError, match=r"contact\.tangential_restitution: engine embedded .*lammps"):
+        outcome(tmp_path, ["embedded"], contact=contact)
+
+
 @pytest.mark.yade
 def test_yade_without_its_module_refuses_friction_and_says_how_to_build_it(tmp_path):
     """YADE's own spring differs from the spring of the module: psi_2 would be off by 0.5."""
@@ -162,8 +208,6 @@ def test_spheres_that_turn_about_each_other_approach_along_their_line_of_centres
         assert values[:, :19] == pytest.approx(expected[:19].T, rel=1e-9, abs=1e-12)
     assert found.tangential == pytest.approx(turn * distance[18], rel=1e-9)
 
-
-HOSTS = [pytest.param("lammps", marks=needs_lammps), pytest.param("yade", marks=pytest.mark.yade("module"))]
 
 
 @pytest.mark.parametrize("host", HOSTS)

@@ -29,6 +29,7 @@ from .fields import (
 )
 from .law import LawChoice, LawMaterial, check_law
 from .messages import explain
+from .sizes import Share
 from .toml import read_toml, with_library
 
 RIGID = "rigid"
@@ -170,6 +171,7 @@ class Friction(Frozen):
 
     friction: Coefficient
     tangential: Tangential = "history"
+    tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
 
 
 class Case(Frozen):
@@ -220,8 +222,10 @@ class Case(Frozen):
 
     @property
     def tolerances(self) -> Check:
-        """`check`; by default psi_2 of one spring is not checked, because theory has partial slip."""
-        if self.contact is None or self.contact.tangential != "history" or "psi_2" in self.check.model_fields_set:
+        """`check`; by default psi_2 of one spring or with a dashpot is not checked: theory has partial slip alone."""
+        c = self.contact
+        of_theory = c is None or (c.tangential != "history" and c.tangential_restitution is None)
+        if of_theory or "psi_2" in self.check.model_fields_set:
             return self.check
         return self.check.model_copy(update={"psi_2": math.inf})
 

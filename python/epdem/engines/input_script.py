@@ -101,7 +101,7 @@ def impact_model(plan: Plan) -> Model:
         friction=of_pairs(oblique.friction if oblique else 0.0),
         tangential=oblique.tangential if oblique else "history",
         viscous=None if x.viscous_restitution is None else of_pairs(x.viscous_restitution),
-        tangential_restitution=None,
+        tangential_restitution=oblique.restitution if oblique else None,
         rolling=None,
         cohesion=None,
         adhesion=of_pairs(x.law.parameters[ADHESION]) if x.law.adheres else (),

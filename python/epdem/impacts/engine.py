@@ -81,6 +81,8 @@ def check_features(tool: ImpactEngine, x: Experiment) -> None:
         raise Unsupported(f"impact.angles: engine {tool.name} runs normal impacts only")
     if x.oblique and np.isfinite(x.target.radius) and Feature.SPHERE_FRICTION not in tool.features:
         raise Unsupported(f"impact.angles: engine {tool.name} runs oblique impacts on walls only")
+    if x.oblique and x.oblique.restitution is not None and Feature.TANGENTIAL_DASHPOT not in tool.features:
+        raise Unsupported(f"contact.tangential_restitution: engine {tool.name} has no tangential dashpot")
     if x.viscous_restitution is not None and Feature.DASHPOT not in tool.features:
         raise Unsupported(f"viscous: engine {tool.name} does not have this dashpot")
 

@@ -67,6 +67,7 @@ class Oblique:
     spin: np.ndarray
     friction: float
     tangential: Tangential
+    restitution: float | None = None  # of the dashpot beside the tangential spring; None: no dashpot
 
 
 @dataclass(frozen=True)
@@ -215,13 +216,14 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
     if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
         numbers = replace(default_numbers(law), adhesion=numbers.adhesion if find_law(law).adheres else None)
         own = {}
+    c = case.contact
     x = Experiment(
         law=pair_of(numbers, body, target, own),
         body=body,
         target=target,
         speed=speed,
         viscous_restitution=case.viscous.restitution if case.viscous else None,
-        oblique=Oblique(angle, spin, case.contact.friction, case.contact.tangential) if case.contact else None,
+        oblique=Oblique(angle, spin, c.friction, c.tangential, c.tangential_restitution) if c else None,
         numerics=case.numerics,
         check=case.tolerances,
         name=case.name,

@@ -145,10 +145,8 @@ def prepare(
         plans = {x.law.name: plan(x, predictions[x.law.name]) for x in experiments}
         warnings = case_warnings(case)
         if case.contact and case.tolerances.psi_2 == math.inf:
-            warnings.append(
-                f"contact.tangential = {case.contact.tangential!r}: psi_2 is not checked, because its reference is "
-                "partial slip; take 'partial_slip', or give check.psi_2"
-            )
+            given = "partial slip without a dashpot; take 'partial_slip' alone, or give check.psi_2"
+            warnings.append(f"contact: psi_2 is not checked, because its reference is {given}")
         for law, p in plans.items():
             warnings += predictions[law].warnings
             for tool in tools:

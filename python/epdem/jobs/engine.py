@@ -20,6 +20,7 @@ class Feature(StrEnum):
     DASHPOT = "dashpot"  # [viscous] of a case of impacts
     FRICTION = "friction"  # oblique impacts on walls
     SPHERE_FRICTION = "friction of two spheres"  # oblique impacts of two spheres
+    TANGENTIAL_DASHPOT = "tangential dashpot"  # contact.tangential_restitution of oblique impacts
     DECK = "deck"  # the engine reads a deck, which runs without epdem
     POSITIONS = "positions"  # an overlap is a difference of positions
     RESTART = "restart"  # an interrupted scene continues from a restart file

@@ -38,7 +38,7 @@ class Lammps(Host):
     launcher, scene_deck, tables, resumed = launcher, deck, tables, resume
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
-        | {Feature.RESTART}
+        | {Feature.RESTART, Feature.TANGENTIAL_DASHPOT}
     )
 
     @property

@@ -40,7 +40,7 @@ class Yade(Host):
     ranks, mpirun = 1, ""
     features = frozenset({Feature.DECK, Feature.POSITIONS})
     of_classes = frozenset(  # with epdem_yade only
-        {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION}
+        {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.TANGENTIAL_DASHPOT}
     )
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
