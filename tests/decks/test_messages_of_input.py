@@ -168,7 +168,7 @@ def test_impacts(case, changes, says, tmp_path):
         ("adhesive_powder", {"contact.tangential": "partial_slip"}, "laws with adhesion have 'history' only; take it"),
         ("settle_glass", {"check": {"e_n": 1e-3}}, "check: unknown key of a scene; it belongs to impacts"),
         ("settle_glass", {"scene.rate": 600}, 'in quotes, as "600 Hz", got 600'),
-        ("settle_glass", {"numerics.time_step": "1 ms"}, "impact at the scene's highest speed is stable up to"),
+        ("settle_glass", {"numerics.time_step": "10 ms"}, "impact at the scene's highest speed is stable up to"),
         ("settle_glass", {"numerics.cut": "x"}, "numerics.cut = 'x', unknown key; the nearest: numerics."),
         ("compaction_powder", {"scene.height": "4 mm"}, "must be below the box's height (0.0032 m)"),
         (
