@@ -14,6 +14,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.jobs.engine import check
 from epdem.verification.models import engine as model
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -56,7 +57,7 @@ def test_a_restitution_that_no_dashpot_has_is_refused_with_its_range(value):
 def test_an_engine_without_our_dashpot_says_so(name):
     x = experiment(parse(viscous(), "test"), "thornton")
     with pytest.raises(CaseError, match="--engine"):
-        model(name).deck(plan(x, predict(x)))
+        check(model(name), plan(x, predict(x)))
 
 
 @pytest.mark.parametrize("law", ["thornton", "johnson"])

@@ -209,7 +209,6 @@ def test_spheres_that_turn_about_each_other_approach_along_their_line_of_centres
     assert found.tangential == pytest.approx(turn * distance[18], rel=1e-9)
 
 
-
 @pytest.mark.parametrize("host", HOSTS)
 @pytest.mark.parametrize(("angle", "limit"), [("5 deg", 2e-4), ("60 deg", 1e-3)])
 def test_oblique_spheres_are_measured_along_their_line_of_centres(host, angle, limit, tmp_path):

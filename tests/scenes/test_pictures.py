@@ -27,6 +27,7 @@ def drawn(name: str):
     p = planned(name)
     tables = scene_engine("liggghts").read(p, STORED / name)
     tables["measures"] = measures.curves(p, tables)
+    tables["checks"] = checks.checks(p, tables)
     (chart,) = report.key(p, tables)
     return p, tables, chart.panels
 

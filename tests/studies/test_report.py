@@ -125,7 +125,7 @@ def test_the_page_stands_alone_and_says_where_its_numbers_come_from(folder, char
     assert [name for name, _ in alts] == list(charts)
     heads = re.findall(r'<h2 id="title\d+">([^<]+)</h2>', own)
     assert len(set(heads)) == len(heads) > 8 and heads[0] == "Restitution against impact speed"
-    assert re.search(r"<dt>yield_pressure</dt><dd>[\de.+]+ Pa</dd>", own)
+    assert re.search(r"<dt>yield_pressure</dt><dd>2800 MPa</dd>", own)
     reasons = re.findall(r"<tr><td><code>([^<]+)</code></td><td>([^<]*)</td>", own)
     assert ("units si", "guard: the default, stated explicitly") in reasons
     assert sum(bool(why) for _, why in reasons) > 15 and any("ep/thornton" in line for line, why in reasons if why)

@@ -9,6 +9,7 @@ import shutil
 import signal
 import sys
 from contextlib import nullcontext
+from inspect import unwrap
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -192,11 +193,11 @@ def deck(
         refuse_options(file, "a scene has its own law", law=law)
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")
-    from ..api import deck as write
+    from ..api import deck as write  # unwrapped, its errors name options
     from ..base.rendering import with_reasons
 
     with with_reasons() if reasons else nullcontext():
-        files = write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn)
+        files = unwrap(write)(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn)
     raise answer({"files": files}, map(str, files), as_json)
 
 
@@ -209,12 +210,12 @@ def cite(
     as_json: AsJson = False,
 ) -> None:
     """Print what to cite for the law of a case and for the engines that run the case."""
-    from ..api import cite as cited
+    from ..api import cite as cited  # as above
 
     refuse_options(case, "--bibtex prints BibTeX", json=as_json and bibtex)
     if cli_scene.is_scene(case):
         refuse_options(case, "a scene has its own law", law=law)
-    found = cited(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
+    found = unwrap(cited)(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
     if bibtex:
         print(found.bibtex(), end="")
         return
