@@ -191,13 +191,14 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     p = write_deck(parse(data), tmp_path)
     launcher.run("in.scene", tmp_path)
     ends = log.ends(tmp_path / launcher.OUT)
-    whole = tables.particles(Frames(p.with_ends(ends), tmp_path, tables.kinds(p)))
+    done = p.with_ends(ends)
+    whole = tables.particles(Frames(done, tmp_path, tables.kinds(done)))
     files = restart_steps(tmp_path)
     for step in files:
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
         assert log.ends(tmp_path / launcher.OUT) == ends
-        assert tables.particles(Frames(p.with_ends(ends), tmp_path, tables.kinds(p))).equals(whole)
+        assert tables.particles(Frames(done, tmp_path, tables.kinds(done))).equals(whole)
     assert {ends["settle"], ends["more"]} <= {*files}
 
 

@@ -114,10 +114,10 @@ class StopCondition:
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
     `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. halted: formula
-    of whether the condition holds, for fix halt, "": the run stops at each look. kept: first step after a restart file
-    and the share of it, None: the host needs none. opposite: formula of the force on the wall against a punch. stop:
-    commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends the run
-    at 0; "": no bed is pressed. gone: steps with looks before a continued run.
+    of whether the condition holds, for fix halt, "": the run stops at each look. kept: first step here, of a
+    phase or of a continued run, and its share, None: the host needs none. opposite: formula of the force on the wall
+    against a punch. stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed
+    bed, which ends the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
     """
 
     first: int
@@ -131,7 +131,7 @@ class StopCondition:
     nears: bool = False
     missing: str = ""
     halted: str = ""
-    kept: tuple[int, str] | None = None
+    kept: tuple[str, str] | None = None
     opposite: str = ""
     stop: tuple[str, ...] = ()
     gone: int = 0
@@ -239,7 +239,7 @@ def stop_condition(
             every=p.every,
             nears=run.slows is None,
             missing="" if run.slows is None else missing,
-            kept=(-1, "1.0") if before and p.restarts else None,
+            kept=("${now}+1", "1.0") if before else None,  # as in YADE: full speed in the first step
             halted="*".join(f"(v_awaited{x.replace(' ', '')})" for x in words)
             if halts and run.slows is not None
             else "",

@@ -44,8 +44,8 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
         comes = step == begin and bool(part.bodies or at_once)
         gone = step - begin
         stop = later(part.stop, gone, p.every)
-        if stop and stop.kept and gone:
-            stop = replace(stop, kept=(step + 1, _share(folder / launcher.OUT, step)))
+        if stop and stop.kept and part.stop and gone > part.stop.first:
+            stop = replace(stop, kept=(str(step + 1), _share(folder / launcher.OUT, step)))
         rest = replace(part, steps=part.steps - gone, stop=stop)
         d = replace(d, phases=(*d.phases[:number], rest, *d.phases[number + 1 :]))
     path = folder / "in.resume"
