@@ -72,6 +72,24 @@ def pressed(tmp_path_factory):
     return run(write_case(press(measure=sides), folder), out=folder / "out")
 
 
+@pytest.mark.parametrize(
+    ("engine", "energy"),
+    [
+        *(pytest.param(*e.values, True, marks=e.marks) for e in ENGINES),
+        pytest.param("liggghts", False, marks=pytest.mark.liggghts),
+    ],
+)
+def test_a_step_too_large_for_the_pressed_bed_is_named(engine, energy, pressed, tmp_path):
+    """Three times the step of the case; at that step nothing is said."""
+    data = press()
+    data["numerics"] = {"time_step": f"{3 * plan(parse(press())).time_step!r} s"}
+    data["output"] |= {"energy": energy, "color": "speed"}
+    found = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    said = [w for w in found.warnings if "gains energy that no wall puts in" in w]
+    assert len(said) == 1 and "give numerics.time_step = '" in said[0] and not found.passed
+    assert not any("gains energy" in w for w in pressed.warnings)
+
+
 @pytest.mark.liggghts
 def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed):
     found, rows, spheres = pressed.results.tables["stages"], pressed.results.rows, pressed.results.particles

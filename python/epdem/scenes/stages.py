@@ -16,6 +16,7 @@ from .plan import Phase, ScenePlan
 
 SLOW = 1e-3  # inertial number below which a bed deforms as if at rest [GDR MiDi 2004, Eur. Phys. J. E 14, 341]
 NEAR = 5e-3  # error of the pressure of a stage from which on a sentence names it
+FAST = 3.0  # rms speed of a bed over the speed of its punch; spheres that the punch hits fly at twice its speed at most
 FITTED = 0.95  # relative density up to which a stage counts for a fit
 Tables = dict[str, pd.DataFrame]
 
@@ -102,7 +103,7 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
         normal = loads.reindex(ends, fill_value=0.0).to_numpy()
         found["radial_pressure"] = (normal / (stages.perimeter * found["height"])).where(under_load)
         axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
-        found["radial_over_axial"] = (found["radial_pressure"] / axial).where(axial > 0.0)
+        found["radial_over_axial"] = found["radial_pressure"] / axial.where(axial > 0.0)
     found["work"] = np.interp(ends, tables["rows"]["step"], work_of_walls(p, tables["rows"]))
     if "energy_balance" in tables:
         energies = tables["energy_balance"].set_index("step")
@@ -200,6 +201,24 @@ def warnings(p: ScenePlan, tables: Tables) -> list[str]:
             "lower pressures, or smaller spheres"
         )
     return found
+
+
+def gains_energy(p: ScenePlan, tables: Tables) -> list[str]:
+    """A sentence for a bed that gains energy: by its balance, or because it moves faster than a punch can drive it."""
+    declared, checks, rows = p.scene.stages, tables["checks"], tables["rows"]
+    assert declared is not None
+    mass, fast = volume(p, tables) * max(p.case.materials[part.material].density for part in p.scene.filled), False
+    for phase, times in zip(p.phases, p.phase_table.to_dict("records"), strict=True):
+        during = rows[(rows["step"] > times["begin"]) & (rows["step"] <= times["end"])]
+        speed = max(0.0, towards(p, declared, phase))
+        fast |= speed > 0.0 and bool((during["kinetic_energy"] > 0.5 * mass * (FAST * speed) ** 2).any())
+    if not fast and checks[checks["key"].isin(["energy_residual", "energy_gained"])]["passed"].all():
+        return []
+    step = max(phase.time_step for phase in p.phases)
+    return [
+        f"the pressed bed gains energy that no wall puts in: its time step, {step:.2g} s, is too large, and its "
+        f"pressures and densities are wrong; give numerics.time_step = '{0.5 * step:.2g} s'"
+    ]
 
 
 def _behind(p: ScenePlan, tables: Tables) -> int:

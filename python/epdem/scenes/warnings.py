@@ -85,7 +85,7 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
         "left (relative density 1), and the tables end there; reduce the force, or the duration of the phase"
         for phase in phases[phases["until"] == NO_VOID].head(1).to_dict("records")
     ]
-    pressing = stages.warnings(p, tables) if "stages" in tables else []
+    pressing = [*stages.gains_energy(p, tables), *stages.warnings(p, tables)] if "stages" in tables else []
     softens = "finite_strain" in p.model.ratios()
     effect = PRESSED if p.model.compaction else validity.SOFTENED if softens else validity.OVERESTIMATED
     others = [*servo.not_reached(p, tables["rows"]), *flow_warnings(p, tables), *_still_moves(p, tables)]
