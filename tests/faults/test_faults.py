@@ -22,7 +22,9 @@ HALVES = [sorted({fault.test for fault in FAULTS})[half::2] for half in (0, 1)]
 
 def needs_an_engine(test: str) -> bool:
     """Whether the engine that a test names in its parameters, or YADE's module, is missing."""
-    if "test_yade_phases" in test and not {"YADE_SOURCE", "EPDEM_YADE_MODULE"} & {*os.environ}:
+    if ("test_yade_phases" in test or "test_yade_plates" in test) and not {"YADE_SOURCE", "EPDEM_YADE_MODULE"} & {
+        *os.environ
+    }:
         return True
     return any(name in test.partition("[")[2] and not shutil.which(name) for name in ("liggghts", "yade"))
 
