@@ -247,6 +247,8 @@ class Recorder:
             if self._stops is None:
                 self._look(self.values)
             self._reached = self._held >= 0
+        if self._until and O.iter == self._end and not self._reached:
+            self._rest()  # without its condition, too
         ended = self._recorded and O.iter == self._begin  # the phase before
         if not (self._records or ended):
             return
@@ -289,8 +291,12 @@ class Recorder:
         self._other = float(self._opposite(row)) if self._opposite else 0.0
         if holds(self._value):
             self._held = O.iter
-            for k in self._stops or ():
-                O.bodies[k].state.vel = (0, 0, 0)
+            self._rest()
+
+    def _rest(self) -> None:
+        """Bring the walls of the phase to rest."""
+        for k in self._stops or ():
+            O.bodies[k].state.vel = (0, 0, 0)
 
     def move(self, ids: Sequence[int], velocity: Sequence[float]) -> None:
         """Give bodies of a wall their velocity in the coming step [m/s], which is another one in each step."""
