@@ -113,11 +113,10 @@ class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
-    `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. halted: formula
-    of whether the condition holds, for fix halt, "": the run stops at each look. kept: first step here, of a
-    phase or of a continued run, and its share, None: the host needs none. opposite: formula of the force on the wall
-    against a punch. stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed
-    bed, which ends the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
+    `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. kept: first step
+    here, of a phase or of a continued run, and its share, None: the host needs none. opposite: formula of the force on
+    the wall against a punch. stop: commands that bring the walls to rest. void: formula of the height of the void in a
+    pressed bed, which ends the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
     """
 
     first: int
@@ -130,7 +129,6 @@ class StopCondition:
     every: int = 0
     nears: bool = False
     missing: str = ""
-    halted: str = ""
     kept: tuple[str, str] | None = None
     opposite: str = ""
     stop: tuple[str, ...] = ()
@@ -191,13 +189,12 @@ def stop_condition(
     force: Callable[[str, int], str],
     stop: Sequence[str] = (),
     *,
-    halts: bool = False,
     before: Callable[[str, int], str] | None = None,
 ) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS: by its condition, or by a bed without void.
 
     None: it does not. place: formula of the height that a pressed bed has. force: word of a component of the force
-    on a wall at a step. stop: commands that bring the walls of the phase to rest. halts: whether the host has fix halt.
+    on a wall at a step. stop: commands that bring the walls of the phase to rest.
     before: word of such a component, of a wall that slows, at the step before.
     """
     void = next((f"{place(bed)}-{number(bed.solid_height)}" for bed in p.pressed if bed.phase == run.name), "")
@@ -240,9 +237,6 @@ def stop_condition(
             nears=run.slows is None,
             missing="" if run.slows is None else missing,
             kept=("${now}+1", "1.0") if before else None,  # as in YADE: full speed in the first step
-            halted="*".join(f"(v_awaited{x.replace(' ', '')})" for x in words)
-            if halts and run.slows is not None
-            else "",
             opposite=opposite,
             stop=tuple(stop),
         )

@@ -129,7 +129,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             gates=tuple(gates[name] for name in run.added),
             commands=(*motions(p, number), *_power(p, number)) if number else (),
             ends=tuple(decks.wall_id(name) for name in run.removed),
-            stop=stop_condition(p, run, partial(height, p), force, stop_commands(p, run), halts=True),
+            stop=stop_condition(p, run, partial(height, p), force, stop_commands(p, run)),
             restart_commands=restart_commands(p, number),
         )
 
