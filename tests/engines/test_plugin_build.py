@@ -68,6 +68,7 @@ def test_the_plugin_exports_only_the_functions_that_it_takes_over():
         *["FixWallGran"] * 2,
         *["FixNVESphere"] * 2,
         *["AtomVecSphere"] * 2,
+        "FixMeshSurface",
         *["FixNeighlistMesh"] * 3,
         "FixContactHistory",
         *["Neighbor"] * 4,

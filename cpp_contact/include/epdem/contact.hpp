@@ -140,11 +140,16 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     reached = grown.before.delta_max;
     delta_max = grown.delta_max;
     observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
-      GrownStep<Law> copy;  // number by number: what is passed by its address stays in memory
+      union Copy {  // number by number: what is passed by its address stays in memory
+        GrownStep<Law> step;
+        Copy() noexcept {}
+      } copy;
+#ifndef __CUDACC__
 #pragma GCC unroll 64
-      for (std::size_t k = 0; k < sizeof copy / sizeof(T); ++k) put_number(copy, k, number_at<T>(grown, k));
+#endif
+      for (std::size_t k = 0; k < sizeof copy / sizeof(T); ++k) put_number(copy.step, k, number_at<T>(grown, k));
       const auto peak = before.point;
-      return grown_energies(law, R_star, peak, copy, overlap, closing);
+      return grown_energies(law, R_star, peak, copy.step, overlap, closing);
     });
     growth.keep();
   }
