@@ -111,6 +111,7 @@ void WallLoop::scatter() {
 }
 
 void WallLoop::find_couples(const FixWallGran& wall) {
+  coupled_ = nullptr;
   const std::string name = std::string("couple_") + wall.id;
   const auto* const kept = modify->find_fix_property(name.c_str(), "property/atom", "vector", 3, 0, "epdem", false);
   couples_ = kept ? kept->array_atom : nullptr;
@@ -122,8 +123,11 @@ void WallLoop::add_couple(int i, LAMMPS_NS::FixMeshSurface* mesh, double overlap
   const Vec<double> couple = torque - cross(to_middle(overlap, from_wall) - from_wall, force);
   if (mesh) {
     double none[3] = {}, on_wall[3] = {-couple.x, -couple.y, -couple.z};
-    if (auto* const sums = dynamic_cast<LAMMPS_NS::MeshModuleStress*>(mesh->get_module("stress")))
-      sums->add_global_external_contribution(none, on_wall);
+    if (mesh != coupled_) {  // a search by name
+      coupled_ = mesh;
+      stress_ = dynamic_cast<LAMMPS_NS::MeshModuleStress*>(mesh->get_module("stress"));
+    }
+    if (stress_) stress_->add_global_external_contribution(none, on_wall);
   } else if (couples_) {
     const double of_axes[] = {couple.x, couple.y, couple.z};
     for (int x = 0; x < 3; ++x) couples_[i][x] += of_axes[x];

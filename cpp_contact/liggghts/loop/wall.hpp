@@ -11,6 +11,10 @@
 
 #ifdef EPDEM_BUILT_FOR
 
+namespace LAMMPS_NS {
+class MeshModuleStress;
+}
+
 namespace epdem::liggghts::loop {
 
 /// State of the loop over a mesh of a wall, of mesh.cpp.
@@ -66,7 +70,9 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   Pass pass_{};
   const Plan* plan_ = nullptr;
   LAMMPS_NS::FixWallGran* wall_ = nullptr;
-  double** couples_ = nullptr;  // of rolling friction on each sphere, which a deck asks for by a fix
+  double** couples_ = nullptr;                    // of rolling friction on each sphere, which a deck asks for by a fix
+  LAMMPS_NS::FixMeshSurface* coupled_ = nullptr;  // the mesh of the last couple in this step, and its sums or none
+  LAMMPS_NS::MeshModuleStress* stress_ = nullptr;
   int n_ = 0;
 };
 
