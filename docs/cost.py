@@ -1,83 +1,77 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/cost.md and its figure: error against run time of every law, for impacts and for a bulk scene.
+"""docs/cost.md, its figure and its tables in docs/data: error against run time of every law.
 
 Run: .venv/bin/python docs/cost.py      (needs LIGGGHTS; some minutes)
 """
 
-from pathlib import Path
-
 import pandas as pd
-from pages import markdown
+from pages import DOCS, load, markdown, store
 
 from epdem.engines import scene_engine
 from epdem.report.chart import save
 from epdem.verification import cost
-from epdem.verification.cost import EXPONENT, REFERENCE, Outcome
+from epdem.verification.cost import EXPONENT, REFERENCE
 from epdem.verification.cost_report import chart, tables
 from epdem.verification.stability.bulk import convergence
 
-DOCS = Path(__file__).parent
+NAMES = ("cost", "cost_models", "cost_bulk")  # errors of impacts by steps, their summary, the bulk scene
 LAWS = ["thornton", "cavity", "johnson", "hertz"]  # of the bulk scene; impacts have meyer, too
 
-BULK = """
-## A bulk scene
+TEXT = """# Accuracy and cost
 
-The scene consists of two blocks of {spheres} steel spheres that collide at 300 m/s. The table shows the error of the
-plastic work against a run at a quarter of the finest step: the `error` of the mean and the `rms` error of single
-spheres, both over the mean. `order` is the order of the rms error between neighbouring rows. Steps are shares of the
-smallest stability limit of these laws at 300 m/s. [speed.md](speed.md) has the run times of beds.
+`.venv/bin/python docs/cost.py` writes this page, its figure and the tables in `docs/data`.
 
-{table}
-"""
-
-
-def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
-    """The text of docs/cost.md."""
-    errors, models, *scene = (markdown(table) for table in tables(outcome, bulk).values())
-    text = f"""# Accuracy and cost
-
-This command writes the page:
-
-```sh by hand
-{command}
-```
-
-The case is `{outcome.case.name}` ({outcome.seconds:.0f} s). Errors are maxima over all speeds and phases. Times are
-medians of the loop time of the engine in interleaved runs without output. Absolute times depend on the machine and its
-load. The figure of merit is the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in the same run: median and
-distance of the quartiles, from 300 steps in contact on. `meyer` has a hardening exponent of {EXPONENT}.
-
-- `best_error`: smallest error of e_n; `order`: that of its fall with the steps.
-- `steps_for_0.01`, `ns_for_0.01`: coarsest steps in contact for an error of e_n of 1 %, and their stepping time of an
-  impact [ns].
-- `startup`, `setup`: of the engine [s].
-- A dash: no number of steps up to {outcome.rows["steps"].max()} keeps e_n within the error; the error has no order.
-
-{models}
+The case is `steel_wall`: impacts of a steel sphere on a steel wall at 0.09 to 268 times the yield speed. Errors are
+maxima over all speeds and starting phases. Times are medians of the loop time of the engine in interleaved runs without
+output. Absolute times depend on the machine and its load. The figure of merit is the ratio to LIGGGHTS's own elastic
+`hertz` (`{reference}`) in the same run, from 300 steps in contact on. `meyer` has a hardening exponent of {exponent}.
 
 ![error of e_n against stepping time and steps](figures/cost.png)
 
-`.venv/bin/python docs/cost.py` draws this figure.
+- `best_error`: smallest error of e_n up to {most} steps; `order`: that of its fall with the steps.
+- `steps_for_E`: smallest number of steps in contact with an error of e_n of at most E; a dash: none.
 
-## All errors
+{models}
 
-Errors are relative, the largest and the root of the mean square.
+[cost.csv](data/cost.csv) has the errors of e_n, contact time and peak force (maximum and root of the mean square) at
+every number of steps; [cost_models.csv](data/cost_models.csv) has the stepping time, start and set-up [ns, s].
 
-{errors}
+## A bulk scene
+
+Two blocks of {spheres} steel spheres collide at 300 m/s. The table shows the rms error of the plastic work of single
+spheres over the mean, against a run at a quarter of the finest step, and the order between the last two steps. The
+steps are fractions of the smallest stability limit of these laws at 300 m/s. [cost_bulk.csv](data/cost_bulk.csv) also
+has the error of the mean. [Speed](speed.md) has the run times of beds.
+
+{scene}
 """
-    if bulk is not None:
-        text += BULK.format(spheres=bulk["spheres"].iloc[0], table=scene[0])
-    return text
+
+
+def document(errors: pd.DataFrame, models: pd.DataFrame, scene: pd.DataFrame) -> str:
+    """The text of docs/cost.md from the tables of docs/data."""
+    shown = ["model", "order", "best_error", "ns_per_step", "ratio_to_hertz"]
+    shown += [name for name in models if name.startswith("steps_for")]
+    wide = scene.pivot_table(index="model", columns="share", values="rms", sort=False)
+    wide = wide[sorted(wide, reverse=True)].assign(order=scene.groupby("model", sort=False)["order"].last())
+    return TEXT.format(
+        reference=REFERENCE,
+        exponent=EXPONENT,
+        most=errors["steps"].max(),
+        models=markdown(models[shown]),
+        spheres=scene["spheres"].iloc[0],
+        scene=markdown(wide.reset_index()),
+    )
 
 
 def main() -> None:
-    """Run impacts and the bulk scene; write page and figure."""
-    case = DOCS.parent / "cases/steel_wall.toml"
-    outcome = cost.run(case, engines=["embedded", "liggghts"], laws=[*LAWS, "meyer"], repetitions=3)
-    save(chart(outcome), DOCS / "figures", data=False)
-    (DOCS / "cost.md").write_text(
-        document(outcome, convergence(LAWS, scene_engine("liggghts")), ".venv/bin/python docs/cost.py")
+    """Run impacts and the bulk scene; write tables, figure and page."""
+    outcome = cost.run(
+        DOCS.parent / "cases/steel_wall.toml", engines=["embedded", "liggghts"], laws=[*LAWS, "meyer"], repetitions=3
     )
+    save(chart(outcome), DOCS / "figures", data=False)
+    for name, table in zip(NAMES, tables(outcome, convergence(LAWS, scene_engine("liggghts"))).values(), strict=True):
+        store(name, table)
+    (DOCS / "cost.md").write_text(document(*map(load, NAMES)), encoding="utf-8")
 
 
 if __name__ == "__main__":

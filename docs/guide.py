@@ -204,7 +204,8 @@ def main() -> None:
         text = OUTSIDE.sub(r"\1 (`\2`)", page.read_text(encoding="utf-8"))
         text = re.sub(r"\]\(\w+\.ipynb\)", "](#)", mathematics(languages(text), convert))
         (PAGES / page.name).write_text(text, encoding="utf-8")
-    shutil.copytree(ROOT / "docs/figures", PAGES / "figures")
+    for folder in ("figures", "data"):
+        shutil.copytree(ROOT / "docs" / folder, PAGES / folder)
     (PAGES / "reference_commands.md").write_text(commands(), encoding="utf-8")
     (PAGES / "reference_cases.md").write_text(cases(), encoding="utf-8")
     (PAGES / "reference_python.md").write_text(python(), encoding="utf-8")

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the scripts that write pages of the documentation share."""
 
+from pathlib import Path
+
 import pandas as pd
 
 from epdem.base.terminal import cell
+
+DOCS = Path(__file__).parent
 
 
 def markdown(frame: pd.DataFrame) -> str:
@@ -12,3 +16,13 @@ def markdown(frame: pd.DataFrame) -> str:
     return "\n".join(
         head + [f"| {' | '.join(cell(value, 3) for value in row)} |" for row in frame.itertuples(index=False)]
     )
+
+
+def store(name: str, frame: pd.DataFrame) -> None:
+    """Write docs/data/NAME.csv, the numbers behind a page, with three digits."""
+    frame.to_csv(DOCS / f"data/{name}.csv", index=False, float_format="%.3g", lineterminator="\n")
+
+
+def load(name: str) -> pd.DataFrame:
+    """The table docs/data/NAME.csv."""
+    return pd.read_csv(DOCS / f"data/{name}.csv")

@@ -50,14 +50,18 @@ def test_order_is_that_of_a_known_power_and_none_where_nothing_converges():
 def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedded, tmp_path):
     data, figure = cost_report.write(embedded, tmp_path)
     assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000
-    numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0}
-    bulk = pd.DataFrame([{"model": "liggghts, cavity", "spheres": 512} | numbers])
-    text = page.document(embedded, bulk, "python docs/cost.py")
+    numbers = {"spheres": 512, "error": 1e-4, "order": 2.0}
+    steps = [{"share": 0.1, "rms": 4e-4}, {"share": 0.05, "rms": 1e-4}]
+    bulk = pd.DataFrame([{"model": "liggghts, cavity"} | numbers | step for step in steps])
+    text = page.document(*cost_report.tables(embedded, bulk).values())
     assert "512 steel spheres" in text
-    assert "| liggghts, cavity | 512 | 0.1 | 0.0001 | 0.0003 | 2 |" in text
-    text = page.document(embedded, None, "python docs/cost.py")
-    assert "```sh by hand\npython docs/cost.py\n```" in text and "embedded, cavity" in text
+    assert "| model | 0.1 | 0.05 | order |\n|---|---|---|---|\n| liggghts, cavity | 0.0004 | 0.0001 | 2 |" in text
+    assert "`.venv/bin/python docs/cost.py`" in text and "| embedded, cavity |" in text
     assert json.dumps(embedded.models.to_dict("list"))
+
+
+def test_the_page_is_that_of_its_tables():
+    assert (page.DOCS / "cost.md").read_text() == page.document(*map(page.load, page.NAMES))
 
 
 @pytest.mark.liggghts

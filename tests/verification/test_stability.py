@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Stability on stiff and extreme cases: the set, its judges and LIGGGHTS's stiff bulk scenes."""
 
+import csv
 import json
 from dataclasses import replace
 from functools import partial
@@ -273,11 +274,27 @@ def test_the_page_of_the_documentation_names_its_command_and_every_case(monkeypa
 
     monkeypatch.setattr(suite, "verdict", judged)
     outcome = stability.run(["embedded"], ["thornton"])
-    text = page.document(outcome, "python docs/stability.py")
-    assert "`python docs/stability.py`" in text and all(
-        f"| {e.name} |" in text for e in extremes() if e.adhesion is None
-    )
+    found = page.tables(outcome)
+    assert {e.name for e in extremes() if e.adhesion is None} == set(found["stability"]["case"])
+    text = page.document(found)
+    assert "`.venv/bin/python docs/stability.py`" in text
+    assert all(f"| {e.group} |" in text for e in extremes() if e.adhesion is None)
     assert outcome.passed and json.dumps(outcome.verdicts.to_dict("list"))
+
+
+def test_the_page_has_the_numbers_of_its_tables():
+    """Counts and limits by loops over the lines of docs/data/stability.csv."""
+    with (page.DOCS / "data/stability.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    text = (page.DOCS / "stability.md").read_text()
+    assert text == page.document({key: page.load(key) for key in page.NAMES})
+    for name in ("embedded", "liggghts", "yade"):
+        own = [r for r in rows if r["engine"] == name and r["group"] != "adhesion"]
+        passed = sum(r["status"] == "passed" for r in own)
+        absent = sum(r["status"] == "not representable" for r in own)
+        assert f"| without adhesion | {name} | {passed} | 0 | {absent} |" in text
+    limits = [float(r["breaks_at"]) for r in rows if r["breaks_at"]]
+    assert f"from {min(limits):g} on an impact" in text.replace("\n", " ")
 
 
 def test_the_command_names_the_groups_there_are(tmp_path, monkeypatch):
