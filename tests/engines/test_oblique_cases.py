@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hosts import CLASSES, LAMMPS, LIGGGHTS, prepared
+from hosts import run as run_plan
 from lammps_decks import needs_lammps
 
 import oblique
@@ -20,6 +22,7 @@ from epdem.errors import CaseError
 from epdem.impacts import report
 from epdem.impacts.engine import oblique_pairs
 from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
@@ -130,7 +133,7 @@ def test_liggghts_takes_walls_only(tmp_path):
         outcome(tmp_path, ["liggghts"], **changes)
 
 
-HOSTS = [pytest.param("lammps", marks=needs_lammps), pytest.param("yade", marks=pytest.mark.yade("module"))]
+HOSTS = [LAMMPS, CLASSES]
 
 
 def slip_with_dashpot(x, e, steps=20000):
@@ -153,10 +156,7 @@ def slip_with_dashpot(x, e, steps=20000):
     return slip / first
 
 
-DASHPOTS = [pytest.param("liggghts", marks=pytest.mark.liggghts), *HOSTS]
-
-
-@pytest.mark.parametrize("host", DASHPOTS)
+@pytest.mark.parametrize("host", [LIGGGHTS, *HOSTS])
 def test_a_tangential_dashpot_of_a_scene_is_that_of_an_impact(host, tmp_path):
     contact = {"friction": MU, "tangential": "history", "tangential_restitution": 0.3}
     changes = {"law": {"name": "hertz"}, "angles": ["5 deg", "15 deg", "30 deg", "50 deg"], "speeds": ["0.1 m/s"]}
@@ -233,3 +233,44 @@ def test_the_turn_of_two_spheres_is_warned_of_with_its_error(angle, warned, tmp_
         row = found.results.comparison.iloc[0]
         lower = 1 - row["overlap_max"] / row["overlap_max_theory"]
         assert lower == pytest.approx(float(said[0][1]) / 100, rel=0.33)
+
+
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize("tangential", ["history", "partial_slip", "partial_slip_2"])
+def test_lammps_ends_as_liggghts_to_the_bit(tangential, tmp_path):
+    p, _ = prepared("oblique_steel", contact={"tangential": tangential})
+    ours, theirs = (run_plan(name, p, tmp_path / name) for name in ("lammps", "liggghts"))
+    assert np.array_equal(ours.spin, theirs.spin) and np.abs(ours.spin).max() > 1.0
+    assert np.array_equal(ours.tangential, theirs.tangential)
+
+
+@needs_lammps
+@pytest.mark.parametrize("radius", ["10 mm", "4 mm"])
+def test_two_spheres_end_as_in_the_embedded_engine(radius, tmp_path):
+    """The line of centres turns with the spheres, and the embedded engine keeps it."""
+    spheres = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": radius}}
+    p, _ = prepared("oblique_steel", contact={"tangential": "history"}, impact=spheres)
+    ours, theirs = (run_plan(name, p, tmp_path / name) for name in ("lammps", "embedded"))
+    for a, b, limit in ((ours.tangential, theirs.tangential, 0.02), (ours.spin, theirs.spin, 0.06)):
+        assert a.shape == (p.n,) and np.abs(a - b).max() <= limit * np.abs(b).max()
+
+
+def error_of_psi_2(name, folder, **impact):
+    p, prediction = prepared("oblique_steel", impact=impact)
+    found = measure(p, run_plan(name, p, folder))
+    return np.nanmax(np.abs(found["psi_2"] - p.each(prediction.rebound.psi_2)))
+
+
+@pytest.mark.liggghts
+@pytest.mark.yade("module")
+def test_the_rebound_of_maw_barber_and_fawcett_in_yade_is_at_least_as_good_as_in_liggghts(tmp_path):
+    errors = {name: error_of_psi_2(name, tmp_path / name) for name in ("yade", "liggghts")}
+    assert errors["yade"] <= min(0.02, 1.01 * errors["liggghts"]) and errors["liggghts"] < 0.03, errors
+
+
+@pytest.mark.yade("module")
+def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(tmp_path):
+    """At low speed, where the normal does not turn during the contact."""
+    impact = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "6 mm"}, "speeds": ["0.1 m/s"]}
+    assert error_of_psi_2("yade", tmp_path, **impact, angles=["10 deg", "30 deg", "50 deg", "65 deg"]) < 0.02

@@ -1,112 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The laws as C++ classes in YADE: impacts against theory, saving, errors, threads, friction, dashpots, energies."""
+"""The laws as C++ classes in YADE: saving, errors, threads, friction, dashpots, energies."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-from yade_native import ROOT, impacts, result, title, yade
+from yade_native import ROOT, result, title, yade
 
 from epdem.base.declarations import declarations
-from epdem.case.impact import Numerics, parse
-from epdem.case.toml import read_toml
-from epdem.engines import engine
-from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
-from epdem.impacts.plan import plan
-from epdem.impacts.prediction import predict
 
 pytestmark = pytest.mark.yade("module")
-
-CASES = ROOT / "cases"
-LAWS = declarations()
-WITHOUT_ADHESION = [name for name, law in LAWS.items() if not law.adheres]
-ADHESIVE = [name for name, law in LAWS.items() if law.adheres]
-BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
-
-
-def prepared(case="steel_wall", law=None, steps=100, **impact):
-    """(plan, prediction) of a case with other values of its impact."""
-    data = read_toml(CASES / f"{case}.toml")
-    if "target" in impact:
-        data["materials"]["brass"] = BRASS
-    data["impact"] |= impact
-    if law == "meyer":
-        law = {"name": law, "hardening_exponent": 0.3}
-    if isinstance(law, dict):
-        data["law"], law = law, law["name"]
-    numerics = Numerics(steps_in_contact=steps, phases=8)
-    x = experiment(parse(data, "test").model_copy(update={"numerics": numerics}), law)
-    prediction = predict(x)
-    return plan(x, prediction), prediction
-
-
-def errors(p, prediction, found):
-    """Largest relative errors over all speeds and phases; the dent relative to the largest overlap."""
-    m = measure(p, found)
-    theory = {k: p.each(getattr(prediction, k)) for k in ("e_n", "contact_time", "force_max", "overlap_max")}
-    worst = {k: np.abs(getattr(m, k) / v - 1).max() for k, v in theory.items()}
-    dent = np.abs(m.residual_overlap - p.each(prediction.residual_overlap)) / theory["overlap_max"]
-    return worst | {"residual_overlap": dent.max()}
-
-
-# Contact begins within a step, and the peak lies between two: sampled quantities have limits of their own, from
-# (pi/steps)^2/8 of the peak and a share of one step of the contact time.
-@pytest.mark.parametrize("law", WITHOUT_ADHESION)
-def test_impacts_from_0_09_to_268_yield_speeds_agree_with_theory(law, tmp_path):
-    for steps, limit in ((100, 1e-3), (400, 1e-4)):
-        p, prediction = prepared(law=law, steps=steps, speeds={"from": "0.05 m/s", "to": "150 m/s", "count": 16})
-        worst = errors(p, prediction, impacts(p, tmp_path / str(steps)))
-        assert max(worst.values()) <= limit, (steps, worst)
-
-
-@pytest.mark.parametrize("law", WITHOUT_ADHESION)
-@pytest.mark.parametrize("kind", ["sphere-wall", "sphere-sphere"])
-def test_yade_takes_the_steps_of_the_embedded_engine(law, kind, tmp_path):
-    """Step by step the same overlap, force and velocity to the round-off of positions."""
-    other = {"kind": kind, "target": {"material": "brass", "radius": "4 mm"}} if kind == "sphere-sphere" else {}
-    p, _ = prepared(law=law, speeds=["0.05 m/s", "3 m/s", "150 m/s"], **other)
-    compare(p, impacts(p, tmp_path), 1e-8)
-
-
-@pytest.mark.parametrize("law", ADHESIVE)
-def test_impacts_with_adhesion_take_the_steps_of_the_embedded_engine(law, tmp_path):
-    """From sticking to rebound; the contact stands across a gap and ends where the law says."""
-    p, _ = prepared("adhesion_thornton_1998", law, speeds=["0.05 m/s", "3 m/s", "30 m/s"])
-    compare(p, impacts(p, tmp_path), 1e-6)
-
-
-def compare(p, found, limit):
-    embedded = engine("embedded").run(p, Path("unused"))
-    for quantity in ("overlap", "force", "velocity"):
-        a, b = getattr(found, quantity), getattr(embedded, quantity)
-        both = np.isfinite(b)
-        share = np.abs(np.where(both, a - b, 0.0)).max(axis=1) / np.where(both, np.abs(b), 0.0).max(axis=1)
-        assert share.max() <= limit, (quantity, share)
-
-
-@pytest.mark.parametrize("law", ADHESIVE)
-def test_impacts_with_adhesion_agree_with_theory(law, tmp_path):
-    p, prediction = prepared("adhesion_thornton_1998", law, steps=400)
-    found = measure(p, impacts(p, tmp_path))
-    assert np.abs(found.e_n - p.each(prediction.e_n)).max() <= 1e-4
-    for name in ("force_max", "overlap_max"):
-        assert np.abs(getattr(found, name) / p.each(getattr(prediction, name)) - 1).max() <= 1e-4, name
-
-
-def test_dashpot_gives_the_restitution_of_the_damped_law(tmp_path):
-    p, prediction = prepared("viscous_steel", steps=400)
-    found = measure(p, impacts(p, tmp_path))
-    assert np.abs(found.e_n / p.each(prediction.e_n) - 1).max() <= 5e-4
-
-
-def test_partial_slip_gives_the_rebound_of_maw_barber_and_fawcett(tmp_path):
-    p, prediction = prepared("oblique_steel")
-    found = measure(p, impacts(p, tmp_path, tangential="partial_slip"))
-    assert prediction.rebound is not None
-    assert np.nanmax(np.abs(found.psi_2 - p.each(prediction.rebound.psi_2))) <= 0.02
-
 
 SPRING = """
 R, mu, v_n, dt = 0.01, 0.3, 1.0, 2e-8
@@ -378,7 +281,7 @@ json.dump({{"before": before, "after": 0.5 * ball.mass * ball.vel.squaredNorm(),
 """
 
 
-@pytest.mark.parametrize("law", [title(name) for name in WITHOUT_ADHESION if LAWS[name].yields])
+@pytest.mark.parametrize("law", [title(name) for name, law in declarations().items() if law.yields and not law.adheres])
 def test_plastic_work_is_in_the_energies_of_yade_and_of_the_contact(law, tmp_path):
     found = result(ENERGY.format(law=law), tmp_path)
     lost = found["before"] - found["after"]

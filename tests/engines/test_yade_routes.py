@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Engine `yade` with the classes of epdem_yade: the numbers of the C library in a deck, of theory and of LIGGGHTS."""
+"""Engine `yade` with the classes of epdem_yade: the numbers of the C library in a deck and of LIGGGHTS."""
 
 import json
 
 import numpy as np
 import pytest
-from test_yade_native import CASES, prepared
+from hosts import CASES, LAWS, TARGETS, prepared, run
 from yade_native import module_folder
 
-from epdem.base.declarations import declarations
 from epdem.case.scene import parse
 from epdem.engines import doctor, engine
 from epdem.engines.yade import deck as scene_deck
@@ -18,13 +17,13 @@ from epdem.impacts.measurement import measure
 from epdem.impacts.run import run as run_impacts
 from epdem.scenes.plan import plan
 from epdem.verification.motion.compare import compare
+from marks import thorough
 from scenes.parts_cases import FLOOR, parts
 from scenes.scene_runs import run as run_scene
 from scenes.scene_runs import write_case
 
 pytestmark = pytest.mark.yade("module")
 
-LAWS = [name for name, law in declarations().items() if not law.adheres]
 MEASURED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
 HERE = launcher.module
 
@@ -44,31 +43,16 @@ def both(monkeypatch, tmp_path):
     return run
 
 
-def impacts(p, folder):
-    tool = engine("yade")
-    tool.write(p, folder)
-    return tool.run(p, folder)
-
-
-@pytest.mark.parametrize(("law", "kind"), [*((law, "sphere-sphere") for law in LAWS), ("cavity", "sphere-wall")])
-def test_impacts_are_those_of_the_c_library_in_a_deck(law, kind, both):
-    other = {"kind": kind, "target": {"material": "brass", "radius": "4 mm"}} if kind == "sphere-sphere" else {}
-    p, _ = prepared(law=law, speeds=["0.05 m/s", "3 m/s", "50 m/s"], **other)
-    library, ours = (measure(p, found) for found in both(lambda folder: impacts(p, folder)))
+@pytest.mark.parametrize(
+    ("law", "target"), [("cavity", "wall"), *(thorough(law, "sphere", unless=law == "cavity") for law in LAWS)]
+)
+def test_impacts_are_those_of_the_c_library_in_a_deck(law, target, both):
+    p, _ = prepared(law=law, impact=TARGETS[target] | {"speeds": ["0.05 m/s", "3 m/s", "50 m/s"]})
+    library, ours = (measure(p, found) for found in both(lambda folder: run("yade", p, folder)))
     for name in MEASURED:
         one, two = getattr(library, name), getattr(ours, name)
         scale = library.overlap_max if name == "residual_overlap" else one
         assert np.abs((two - one) / scale).max() <= 1e-9, name
-
-
-def test_finite_strain_of_unequal_bodies_is_that_of_the_embedded_engine_in_both(both):
-    softer = {"material": "brass", "radius": "4 mm"}
-    p, _ = prepared(
-        law={"name": "cavity", "finite_strain": True}, speeds=["80 m/s"], kind="sphere-sphere", target=softer
-    )
-    expected = measure(p, engine("embedded").run(p, None)).e_n
-    for found in both(lambda folder: impacts(p, folder)):
-        np.testing.assert_allclose(measure(p, found).e_n, expected, rtol=1e-4)
 
 
 def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine(tmp_path):
@@ -76,28 +60,6 @@ def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine
     rows = outcome.rows[outcome.rows["engine"] == "yade"]
     assert outcome.passed and set(rows["friction"]) == {"partial_slip"}
     assert rows[["normal", "force", "torque"]].to_numpy().max() < 1e-9
-
-
-def error_of_psi_2(p, prediction, found):
-    return np.nanmax(np.abs(measure(p, found)["psi_2"] - p.each(prediction.rebound.psi_2)))
-
-
-@pytest.mark.liggghts
-def test_the_rebound_of_maw_barber_and_fawcett_is_at_least_as_good_as_that_of_liggghts(tmp_path):
-    p, prediction = prepared("oblique_steel")
-    errors = {}
-    for name in ("yade", "liggghts"):
-        tool = engine(name)
-        tool.write(p, tmp_path / name)
-        errors[name] = error_of_psi_2(p, prediction, tool.run(p, tmp_path / name))
-    assert errors["yade"] <= 1.01 * errors["liggghts"] < 0.03, errors
-
-
-def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(tmp_path):
-    """At low speed, where the normal does not turn during the contact."""
-    impact = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "6 mm"}, "speeds": ["0.1 m/s"]}
-    p, prediction = prepared("oblique_steel", **impact, angles=["10 deg", "30 deg", "50 deg", "65 deg"])
-    assert error_of_psi_2(p, prediction, impacts(p, tmp_path)) < 0.02
 
 
 @pytest.mark.parametrize("case", ["viscous_steel", "adhesion_thornton_1998"])
