@@ -113,7 +113,7 @@ fuzz: setup
 valgrind: setup
 	.venv/bin/python scripts/valgrind
 
-# kills, full disks, damaged files: writes docs/reliability.md and goes on where it was stopped
+# kills, full disks, damaged files: writes docs/evidence.md and goes on where it was stopped
 reliability:
 	@scripts/setup yade
 	.venv/bin/python docs/reliability.py

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Instructions of a step with compaction over one without, by callgrind: the numbers of docs/laws.md.
+"""Instructions of a step with compaction over one without, by callgrind: the numbers of docs/compaction.md.
 
 Run: .venv/bin/python bench/compaction_cost.py
 

@@ -3,7 +3,7 @@
 
 Run: .venv/bin/python bench/compaction_powder.py
 
-Prints the table of docs/laws.md and draws docs/figures/compaction_powder.png.
+Prints the table of docs/compaction.md and draws docs/figures/compaction_powder.png.
 """
 
 import tempfile

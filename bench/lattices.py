@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Print the tables of docs/choose.md: lattices of spheres in LAMMPS beside finite elements (data/compaction).
+"""Print the tables behind docs/press.md as CSV: lattices of spheres in LAMMPS beside finite elements (data/compaction).
 
-.venv/bin/python bench/lattices.py             # pressed
-.venv/bin/python bench/lattices.py --released  # pressed and released
+.venv/bin/python bench/lattices.py > docs/data/lattices.csv                      # pressed
+.venv/bin/python bench/lattices.py --released > docs/data/lattices_released.csv  # pressed and released
 
-`die` is one sphere between six rigid walls; in the other lattices all contacts are of spheres. The last line of a table
-is the largest difference of LAMMPS from the lattices in numpy.
+`die` is one sphere between six rigid walls; in the other lattices all contacts are of spheres. Pressed lattices also
+print the largest difference of LAMMPS from the lattices in numpy (stderr).
 """
 
 import sys
@@ -45,11 +45,12 @@ def words(law, *numbers):
     return lambda m: " ".join(map(str, [law, m.E, m.nu, *numbers]))
 
 
+DENSE = "cavity finite_strain compaction"
 LAWS = {
-    "`thornton`": words("thornton", 2.8),
-    "`cavity`": words("cavity", 1.0),
-    "`cavity`, `finite_strain`": words("cavity", 1.0, 1.6, 2.8, 0.82),
-    "`cavity`, `finite_strain`, `compaction`": lammps_lattices.dense_law,
+    "thornton": words("thornton", 2.8),
+    "cavity": words("cavity", 1.0),
+    "cavity finite_strain": words("cavity", 1.0, 1.6, 2.8, 0.82),
+    DENSE: lammps_lattices.dense_law,
 }
 
 
@@ -65,47 +66,50 @@ def beside_numpy(name, curve) -> float:
 
 def pressed(folder) -> None:
     """Deviations of the pressure from finite elements."""
+    print("law,E/Y,nu,lattice,density,quantity,value,finite_elements")
     worst = 0.0
     for mark in ("", "_soft", "_60", "_300"):
+        material = MATERIALS[mark]
         for law, of_material in LAWS.items():
-            dense = of_material is lammps_lattices.dense_law
-            if not dense and mark in ("_60", "_300"):
+            if law != DENSE and mark in ("_60", "_300"):
                 continue
-            cells = []
             for name, density in DENSITIES.items():
                 key = name + mark
                 if (mark == "_300" and name == "hex") or (mark in ("_60", "_300") and name == "bcc"):
-                    cells += ["-"] * len(density)  # no finite elements
-                    continue
-                curve = lammps_lattices.press(folder, name, MATERIALS[mark], 0.965, law=of_material)
-                cells += [f"{100 * e:+.0f} %" for e in deviation(key, density, curve)]
-                if dense:
+                    continue  # no finite elements
+                curve = lammps_lattices.press(folder, name, material, 0.965, law=of_material)
+                for d, error in zip(density, deviation(key, density, curve), strict=True):
+                    line(law, material, name, d, "pressure_deviation", error)
+                if law == DENSE:
                     worst = max(worst, beside_numpy(key, curve))
-            print(f"| {law} | {MATERIALS[mark].E:g} |", " | ".join(cells), "|", flush=True)
     for mark in ("", "_soft"):
-        d, axial, lateral = lammps_lattices.press_in_die(folder, MATERIALS[mark], 0.965)
-        errors = deviation("die" + mark, DIE, (d, axial))
-        at, szz, sxx = finite_elements("die" + mark, np.array(DIE))
-        ratios = np.interp(-at, -d, lateral / np.maximum(axial, 1e-30))
-        print(f"| die, {MATERIALS[mark].E:g} |", " | ".join(f"{100 * e:+.0f} %" for e in errors), "|")
-        print(
-            "| lateral over axial stress |",
-            " | ".join(f"{r:.2f} ({s:.2f})" for r, s in zip(ratios, sxx / szz, strict=False)),
-            "|",
-        )
+        material = MATERIALS[mark]
+        d, axial, lateral = lammps_lattices.press_in_die(folder, material, 0.965)
+        _, szz, sxx = finite_elements("die" + mark, np.array(DIE))
+        ratios = np.interp(-np.array(DIE), -d, lateral / np.maximum(axial, 1e-30))
+        for at, error in zip(DIE, deviation("die" + mark, DIE, (d, axial)), strict=True):
+            line(DENSE, material, "die", at, "pressure_deviation", error)
+        for at, ratio, theirs in zip(DIE, ratios, sxx / szz, strict=True):
+            line(DENSE, material, "die", at, "lateral_over_axial", ratio, f"{theirs:.2f}")
         worst = max(worst, beside_numpy("die" + mark, (d, axial, lateral)))
-    print(f"numpy: {worst:.1e}")
+    print(f"numpy: {worst:.1e}", file=sys.stderr)
+
+
+def line(law, material, name, density, quantity, value, theirs="") -> None:
+    """One line of the table of pressed lattices."""
+    print(f"{law},{material.E:g},{material.nu:g},{name},{density:g},{quantity},{value:.2f},{theirs}", flush=True)
 
 
 def released(folder) -> None:
     """Recovery at shares of the peak over that of finite elements."""
+    print("lattice,E/Y,nu,density,force_left,recovery_over_finite_elements")
     for name, E, nu, density, _, ways in RELEASES:
         d, P = lammps_lattices.press(folder, name, Material(E, nu, 1.0), density, steps=1600, back=1.8 / E)
         force = P * d**2
         turn = np.argmin(d)
         curve = np.stack([d[turn:] - d[turn], force[turn:] / force[turn:].max()])
-        found = [recovery(curve, share) / ways[share] for share in SHARES]
-        print(f"| {name} | {E:g} | {nu:g} | {density:g} |", " | ".join(f"{r:.2f}" for r in found), "|", flush=True)
+        for share in SHARES:
+            print(f"{name},{E:g},{nu:g},{density:g},{share:g},{recovery(curve, share) / ways[share]:.2f}", flush=True)
 
 
 if __name__ == "__main__":

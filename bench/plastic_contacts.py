@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Writes data/plastic_contacts: eight tests of plastic contacts with their references, which call no contact law.
 
-The closed forms are below; the states during an impact come from scipy's integrator with them. docs/plastic_contacts.md
+The closed forms are below; the states during an impact come from scipy's integrator with them. docs/evidence.md
 explains the files.
 """
 

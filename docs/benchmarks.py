@@ -4,14 +4,13 @@
 Run: .venv/bin/python docs/benchmarks.py      (without runs of community.py only the measured sets)
 """
 
-import re
 import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from pages import markdown
+from pages import markdown, replace_tables
 
 from epdem.errors import CaseError
 from epdem.report.chart import GREY, Axis, Chart, Panel, Series, save
@@ -23,7 +22,6 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "bench"))
 from community_models import CURVE, MODELS, RAIN_FRICTION, SHORT, START, YADE, curve, loop  # noqa: E402
 
-PAGE = ROOT / "docs/benchmarks.md"
 LOWEST, AT_30 = (-138.60, -138.33), (-136.73, -135.97)  # [mm] published for 25,000 spheres: 7 codes, 10 seeds
 LOWEST_TIME, AT_100 = (31.0, 32.0), (-85.0, -31.0)  # [ms], [mm]
 STEPS = {
@@ -147,17 +145,13 @@ def _points(points: pd.DataFrame) -> str:
 
 def main() -> None:
     """Replace the tables between their marks by those of the runs that are there."""
-    runs, text = ROOT / "runs/community", PAGE.read_text(encoding="utf-8")
+    runs = ROOT / "runs/community"
     result = validate(out=ROOT / "runs/validate", force=True)
     save(validation_chart(result), ROOT / "docs/figures", data=False)
     measured = markdown(result.summary)
     tables = {"impact": _impact(runs), "drum": _drum(runs), "long": _long(runs), "measured": measured}
     tables["points"] = _points(result.points)
-    for name, table in tables.items():
-        if table:
-            mark = rf"(<!--{name}-->\n).*?(<!--/-->)"
-            text = re.sub(mark, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)
-    PAGE.write_text(text, encoding="utf-8")
+    replace_tables("benchmarks", tables)
 
 
 if __name__ == "__main__":

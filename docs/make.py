@@ -21,6 +21,7 @@ FIGURES = {  # the command, and where the figure is then
         "epdem run cases/oblique_steel.toml -e embedded -e liggghts -o runs/docs/oblique",
         "runs/docs/oblique/psi.png",
     ),
+    "tablet.png": ("epdem run cases/press_tablet.toml -o runs/docs/press", "runs/docs/press/bed.png"),
     "figure_8_16.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_16.png"),
     "figure_8_17.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_17.png"),
     "figure_8_18.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_18.png"),
@@ -37,6 +38,7 @@ FIGURES = {  # the command, and where the figure is then
 PAGES = {
     "equations.md": ".venv/bin/python docs/equations.py",
     "cost.md": ".venv/bin/python docs/cost.py",
+    "crosscheck.md": ".venv/bin/python docs/crosscheck.py",
     "benchmarks.md": ".venv/bin/python docs/benchmarks.py",
     "stability.md": ".venv/bin/python docs/stability.py",
     "decks.md": ".venv/bin/python docs/decks.py",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the scripts that write pages of the documentation share."""
 
+import re
 from pathlib import Path
 
 import pandas as pd
@@ -26,3 +27,14 @@ def store(name: str, frame: pd.DataFrame) -> None:
 def load(name: str) -> pd.DataFrame:
     """The table docs/data/NAME.csv."""
     return pd.read_csv(DOCS / f"data/{name}.csv")
+
+
+def replace_tables(page: str, tables: dict[str, str]) -> None:
+    """Replace the tables of docs/PAGE.md between <!--NAME--> and <!--/-->; an empty one stays as it is."""
+    path = DOCS / f"{page}.md"
+    text = path.read_text(encoding="utf-8")
+    for name, table in tables.items():
+        if table:
+            mark = rf"(<!--{name}-->\n).*?(<!--/-->)"
+            text = re.sub(mark, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)
+    path.write_text(text, encoding="utf-8")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/reliability.md: runs that are killed at random moments, and faults put into real engines and files.
+"""The tables of reliability in docs/evidence.md: runs killed at random moments, faults in real engines and files.
 
 Run: .venv/bin/python docs/reliability.py [N]      (N kills, default 200; root for the full and read-only disks)
 
@@ -20,7 +20,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
-from pages import markdown
+from pages import markdown, replace_tables
 from reliability_faults import FAULTS
 
 from epdem.impacts import store
@@ -215,26 +215,8 @@ def tried(fault: Callable[[Path, Path], str], out: Path) -> str:
     return fault(WORK, out)
 
 
-TEXT = """# Reliability
-
-Written by `make reliability` (`.venv/bin/python docs/reliability.py {count}`), which computes every number.
-
-{count} trials stop a run at a random moment between its start and its end. A trial passes if the command ends with the
-exit code of its kind (130: stopped, 3: an engine died) without a traceback and without remaining processes, and if the
-next command (`--resume` for scenes, otherwise the same command) gives tables that are bitwise equal to an undisturbed
-run. {wrong} trials failed.
-
-{table}
-
-The next table lists faults in engines, disks and files. A trial passes if the command gives one sentence and the exit
-code of the table and keeps the results of earlier runs.
-
-{faults}
-"""
-
-
-def page() -> str:
-    """The text of docs/reliability.md."""
+def found_tables() -> dict[str, str]:
+    """The tables of docs/evidence.md: trials that passed, faults."""
     found = stored()
     kills = [t for t in found if t["what"] != "fault"]
     count = Counter((t["what"], t["how"], not t["wrong"]) for t in kills)
@@ -250,17 +232,12 @@ def page() -> str:
         for t in found
         if t["what"] == "fault" and t["how"] in FAULTS
     ]
-    return TEXT.format(
-        count=len(kills),
-        wrong=sum(t["wrong"] != "" for t in kills),
-        table=markdown(pd.DataFrame(rows)),
-        faults=markdown(pd.DataFrame(faults)),
-    )
+    return {"kills": markdown(pd.DataFrame(rows)), "faults": markdown(pd.DataFrame(faults))}
 
 
 if __name__ == "__main__":
     WORK.mkdir(parents=True, exist_ok=True)
     cases()
     trials(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
-    (ROOT / "docs/reliability.md").write_text(page(), encoding="utf-8")
+    replace_tables("evidence", found_tables())
     sys.exit(any(t["wrong"] for t in stored()))

@@ -13,10 +13,11 @@ from typing import Any
 
 import pandas as pd
 import tomlkit
+from pages import store
 
 from epdem.engines import engine
-from epdem.impacts import store
 from epdem.impacts.run import run
+from epdem.impacts.store import read as read_results
 from epdem.verification.engine_comparison import crosscheck
 
 ROOT = Path(__file__).parents[1]
@@ -33,12 +34,8 @@ Measured impacts are ten numbers from two kinds of sources ([benchmarks.md](benc
 |---|---|---|---|---|---|
 """
 COMMANDS = """
-## Commands of the other numbers
-
-Run times come from one machine on one day.
-
-| page | numbers | command |
-|---|---|---|
+[commands.csv](data/commands.csv) has the command or test of the other numbers of each page. Run times come from one
+machine on one day.
 """
 
 
@@ -65,7 +62,7 @@ def rows(command: str, folder: Path) -> pd.DataFrame:
     match shlex.split(command):
         case ["epdem", "verify", "crosscheck", case, "-e", model]:
             crosscheck(ROOT / case, engines=[model], out=folder)
-            return store.read(folder / "results.h5").comparison
+            return read_results(folder / "results.h5").comparison
         case ["epdem", "run", case, *options]:
             given = list(zip(options[::2], options[1::2], strict=True))
             tools = [engine(value) for flag, value in given if flag == "-e"]
@@ -90,11 +87,13 @@ def page(read: dict[str, Any]) -> str:
         tolerance = f"{c['tolerance']:g}" if "tolerance" in c else "–"
         cells = c["what"], shown(c["value"]), tolerance, c["reference"], f"`{c['command']}`", f"`tests/{c['test']}`"
         text += f"| {' | '.join(cells)} |\n"
-    text += COMMANDS
-    for name, numbers in read["commands"].items():
-        link = name if name == "README.md" else f"[{name}]({name})"
-        text += "".join(f"| {link} | {what} | `{command}` |\n" for what, command in numbers)
-    return text
+    return text + COMMANDS
+
+
+def commands(read: dict[str, Any]) -> pd.DataFrame:
+    """The commands of the numbers of each page."""
+    lines = [(name, what, command) for name, numbers in read["commands"].items() for what, command in numbers]
+    return pd.DataFrame(lines, columns=["page", "numbers", "command"])
 
 
 def main() -> None:
@@ -104,6 +103,7 @@ def main() -> None:
         found[name]["value"] = float(f"{value:.3g}")
     CLAIMS.write_text(tomlkit.dumps(found), encoding="utf-8")
     PAGE.write_text(page(found), encoding="utf-8")
+    store("commands", commands(found))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 """Spheres in contact with each other and with planes, whose contacts feel each other: option compaction of cavity.
 
 Overlaps are given, and in each step growth, screening and forces are solved together as a fixed point. No number is
-fitted: those of the growth and of the screening are derived in docs/laws.md, Compaction.
+fitted: those of the growth and of the screening are derived in docs/compaction.md.
 """
 
 from dataclasses import dataclass

@@ -134,7 +134,7 @@ def test_yade_has_the_option(tmp_path):
 
 
 def by_hand(*, E_star, R_star, m_star, speed, Y, share, c=0.82):
-    """(e_n, largest contact radius [m]) of an impact, by sums of the formulas of docs/laws.md over 400000 overlaps."""
+    """(e_n, largest contact radius [m]) of an impact: sums of the formulas of docs/strain.md over 400000 overlaps."""
     s_P = math.exp(3 * (2.8 - 3.2 / 3)) / 2
     a_Y, beta = math.pi * R_star * 1.6 * Y / (2 * E_star), math.log(2) / math.log(s_P)
     s = np.geomspace(1, 1e6, 400001)

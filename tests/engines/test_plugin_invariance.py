@@ -87,7 +87,7 @@ def test_friction_turns_with_a_pair_where_it_has_partial_slip_and_in_history_not
 
 @pytest.mark.parametrize("model", ["thornton_ning", "edinburgh"])
 def test_liggghts_own_plastic_models_lose_history_when_pairs_change_sides(rows, model):
-    """The main failures of the table in docs/invariance.md; their scalars carry the newton flag 1."""
+    """The main failures of the table in docs/evidence.md; their scalars carry the newton flag 1."""
     off = rows(model)
     for name in (
         "atoms sorted while touching",

@@ -24,7 +24,7 @@ from epdem.studies.sweep.run import run as run_sweep
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).with_name("epdem"))
-MILL, EXAMPLE = re.findall(r"```\w+ in scenes/test_kinds.py\n(.*?)```", (ROOT / "docs/scenes.md").read_text(), re.S)
+MILL, EXAMPLE = re.findall(r"```\w+ in scenes/test_kinds.py\n(.*?)```", (ROOT / "docs/parts.md").read_text(), re.S)
 SCENE = tomllib.loads(EXAMPLE)["scene"] | {"count": 20, "diameter": "50 mm", "duration": "80 ms"}
 SCENE |= {"balls": [{"material": "glass", "radius": "3 mm"}]}
 CASE = {

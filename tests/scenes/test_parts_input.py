@@ -199,7 +199,7 @@ def test_unknown_and_contradictory_parts_are_refused_in_one_sentence(change, wor
 
 
 def test_the_example_of_the_page_is_a_scene():
-    (example,) = re.findall(r"^```toml\n(.*?)^```$", (CASES.parent / "docs/scenes.md").read_text(), re.M | re.S)
+    (example,) = re.findall(r"^```toml\n(.*?)^```$", (CASES.parent / "docs/parts.md").read_text(), re.M | re.S)
     p = plan(parse(parts() | tomllib.loads(example)))
     mass = 2500 * 4 / 3 * math.pi * 1e-9
     assert p.count == round(2e-3 / mass) + 1 and [x.name for x in p.phases] == ["settle", "hit"]

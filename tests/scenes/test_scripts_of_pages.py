@@ -26,6 +26,7 @@ ELSEWHERE = {  # the test that runs what a script computes
     "bulk_physics": "scenes/test_bulk_physics.py",
     "compaction": "verification/test_compaction.py",
     "cost": "verification/test_cost.py",
+    "crosscheck": "verification/test_crosscheck.py",
     "decks": "decks/test_deck_page.py",
     "equations": "physics/test_equations.py",
     "lattices": "engines/test_lammps_lattices.py",
@@ -40,7 +41,8 @@ BY_HAND = {"adhesive_powder", "benchmarks", "compaction_cost", "liggghts_speed",
 
 
 def test_each_script_that_a_page_names_has_a_place_where_it_runs():
-    text = "".join(page.read_text() for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), ROOT / "docs/data/commands.csv"]
+    text = "".join(page.read_text() for page in pages)
     named = {*re.findall(r"python (?:bench|docs|tests/\w+)/(\w+)\.py", text)}
     short = {Path(case.values[0]).stem for case in SHORT}
     assert named | HERE == short | HERE | {*ELSEWHERE} | BY_HAND

@@ -46,7 +46,7 @@ def test_a_press_that_goes_beyond_small_strain_says_so_however_slow_it_is(tmp_pa
     (said,) = [warning for warning in outcome.warnings if "the strain w a/R*" in warning]
     largest = outcome.results.rows[STRAINS[0]].iloc[-1]
     assert largest > 0.3 and f" reaches {largest:.2f}, above 0.3 in up to " in said
-    assert said.endswith("pressures and springback deviate from finite elements (docs/choose.md, Pressing)")
+    assert said.endswith("pressures and springback deviate from finite elements (docs/press.md)")
     contacts, spheres = outcome.results.contacts, outcome.results.particles
     R_star = spheres["radius"].iloc[0] / (1.0 + (contacts["wall"] == ""))
     digits = 1 + 1e-4  # while a contact unloads, its spheres grow by their other contacts

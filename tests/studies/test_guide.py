@@ -109,25 +109,26 @@ def test_options_in_sentences_are_those_of_their_commands():
     }
     scripts = "".join(p.read_text() for room in ("bench", "docs") for p in (ROOT / room).glob("*.py"))
     others, seen = ("srun", "mpirun", "valgrind", "--fmad=false"), 0
-    for path in PAGES:
-        for code in re.findall(r"`([^`\n]+)`", FENCE.sub("", path.read_text())):
-            words = code.removesuffix("epdem --install-completion").split()  # an option of typer
-            words = words[1:] if words[:1] == ["epdem"] else words
-            names = [name for name in (" ".join(words[:2]), *words[:1]) if name in options]
-            for option in (
-                re.findall(r"(?<![\w-])--[a-z][\w-]*", " ".join(words)) if words and words[0] not in others else ()
-            ):
-                own = options[names[0]] if names else set().union(*options.values())
-                known = option in own or (not names and (option in scripts or "/" in words[0]))
-                assert known, f"{path.name}: {code}"
-                seen += 1
+    codes = [(p.name, code) for p in PAGES for code in re.findall(r"`([^`\n]+)`", FENCE.sub("", p.read_text()))]
+    codes += [("commands.csv", code) for code in pd.read_csv(ROOT / "docs/data/commands.csv")["command"]]
+    for page, code in codes:
+        words = code.removesuffix("epdem --install-completion").split()  # an option of typer
+        words = words[1:] if words[:1] == ["epdem"] else words
+        names = [name for name in (" ".join(words[:2]), *words[:1]) if name in options]
+        for option in (
+            re.findall(r"(?<![\w-])--[a-z][\w-]*", " ".join(words)) if words and words[0] not in others else ()
+        ):
+            own = options[names[0]] if names else set().union(*options.values())
+            known = option in own or (not names and (option in scripts or "/" in words[0]))
+            assert known, f"{page}: {code}"
+            seen += 1
     assert seen > 100
 
 
 @pytest.mark.thorough
 @pytest.mark.liggghts
 def test_every_block_of_the_tour_runs(tmp_path):
-    for page in ("tutorial", "choose", "results", "faq"):
+    for page in ("tutorial", "choose", "strength", "results", "faq"):
         play(blocks(page), tmp_path)
     found = pd.read_csv(tmp_path / "runs/ball/results.csv")
     assert len(found) == 24 and found["passed"].all() and (tmp_path / "runs/ball/report.html").exists()
@@ -138,7 +139,18 @@ def test_every_block_of_the_tour_runs(tmp_path):
 
 @pytest.mark.liggghts
 @pytest.mark.yade("module")
-@pytest.mark.parametrize("page", ["adhesion", "partial_slip", "yade", thorough("laws"), thorough("scenes")])
+@pytest.mark.parametrize(
+    "page",
+    [
+        "adhesion",
+        "partial_slip",
+        "yade",
+        thorough("laws"),
+        thorough("scenes"),
+        thorough("press"),
+        thorough("scene_checks"),
+    ],
+)
 def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     small(tmp_path)
     for _, _, text in of("jinja", f"{page}.md"):
@@ -148,8 +160,8 @@ def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
 
 
 def test_no_page_has_blocks_that_no_test_runs():
-    played = {"tutorial.md", "choose.md", "results.md", "faq.md", "laws.md", "adhesion.md", "partial_slip.md"}
-    played |= {"yade.md", "scenes.md", *OWN}
+    played = {"tutorial.md", "choose.md", "strength.md", "results.md", "faq.md", "laws.md", "adhesion.md"}
+    played |= {"partial_slip.md", "yade.md", "scenes.md", "press.md", "scene_checks.md", *OWN}
     assert {name for name, words, _ in ALL if words in (["sh"], ["python"])} <= played
 
 
@@ -177,7 +189,7 @@ def test_lines_of_decks_run_in_the_deck_of_the_page_on_liggghts(tmp_path):
     whole = next(text for name, _, text in of("deck") if name == "liggghts.md")
     parts = [(name, text) for name, _, text in of("deck") if "pair_style" in text and "atom_style" not in text]
     parts = [(name, text) for name, text in parts if name not in OWN]
-    assert {name for name, _ in parts} >= {"README.md", "partial_slip.md", "scenes.md"}
+    assert {name for name, _ in parts} >= {"README.md", "partial_slip.md"}
     for name, text in parts:
         given = [line.partition("  # ")[0] for line in text.splitlines()]
         heads = [" ".join(line.split()[:2]) for line in given]
@@ -200,7 +212,7 @@ def test_the_reference_names_every_command_and_what_the_package_offers():
         assert f"## epdem {name}\n" in commands
     assert "| `--full` |" in commands and "points" not in re.findall(r"## epdem (\w+)", commands)
     assert {f"## {name}" for name in epdem.__all__} <= set(python.splitlines())
-    errors = (ROOT / "docs/errors.md").read_text()
+    errors = (ROOT / "docs/faq.md").read_text()
     assert all(f"| {code} |" in errors for code in (0, 1, CaseError.exit_code, EngineError.exit_code, 130))
 
 

@@ -12,6 +12,8 @@ CLAIMS = validation.claims_of(READ)
 
 def test_pages_state_the_values_of_the_claims():
     assert validation.PAGE.read_text() == validation.page(READ), "run .venv/bin/python docs/validation.py"
+    assert (DOCS / "data/commands.csv").read_text() == validation.commands(READ).to_csv(index=False)
+    assert all((DOCS.parent / ("" if name == "README.md" else "docs") / name).exists() for name in READ["commands"])
     for name, claim in CLAIMS.items():
         for page in claim.get("quoted", []):
             assert validation.shown(claim["value"]) in (DOCS.parent / page).read_text(), name

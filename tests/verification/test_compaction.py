@@ -30,7 +30,7 @@ def curves():
 
 @pytest.mark.parametrize("name", DEVIATIONS)
 def test_pressure_of_lattices_against_finite_elements(name, curves):
-    """The deviations were computed by another program from the same formulas; they are those of docs/choose.md."""
+    """The deviations were computed by another program from the same formulas; they are those of docs/press.md."""
     density, expected = DEVIATIONS[name]
     error = 100 * deviation(name, density, curves[name])
     assert np.abs(error - expected).max() < 1.0

@@ -20,7 +20,7 @@ spec = importlib.util.spec_from_file_location("plastic_contacts", ROOT / "bench/
 made = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(made)
 FILES = {path.stem: path for path in contacts.stored_tests()}
-PAGE = (ROOT / "docs/plastic_contacts.md").read_text()
+PAGE = (ROOT / "docs/evidence.md").read_text()
 
 
 def numbers(text):

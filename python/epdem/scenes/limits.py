@@ -305,7 +305,7 @@ def dense_beds(beds: Iterable[PressedBed]) -> list[str]:
     known = [bed for bed in beds if bed.solid_height > DENSE * bed.height]
     return [
         f"{bed.key} = {bed.height:.4g} m: the relative density reaches {bed.solid_height / bed.height:.3g}, and above "
-        f"{DENSE} no contact law of spheres gives the pressure (docs/choose.md, Pressing); give a larger height"
+        f"{DENSE} no contact law of spheres gives the pressure (docs/press.md); give a larger height"
         for bed in sorted(known, key=lambda bed: bed.solid_height / bed.height)[-1:]
     ]
 

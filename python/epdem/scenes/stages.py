@@ -179,7 +179,7 @@ def warnings(p: ScenePlan, tables: Tables) -> list[str]:
         worst = dense.loc[dense["relative_density"].idxmax()]
         found.append(
             f"phase {worst['phase']}: the relative density is {worst['relative_density']:.3g}, and above {DENSE} no "
-            "contact law of spheres gives the pressure (docs/choose.md, Pressing); press less"
+            "contact law of spheres gives the pressure (docs/press.md); press less"
         )
     if not numbers.empty and numbers.max() > SLOW:
         name = tables["stages"]["phase"][numbers.idxmax()]
@@ -190,7 +190,7 @@ def warnings(p: ScenePlan, tables: Tables) -> list[str]:
         )
     found += [
         f"phase {phase.name}: its forces are no results: after a release the law leaves all stress on the sides, "
-        "finite elements 27 to 33 % (docs/choose.md, Pressing)"
+        "finite elements 27 to 33 % (docs/press.md)"
         for phase in p.phases
         if np.any(phase.velocity(declared.against)) and towards(p, declared, phase) == 0.0
     ]

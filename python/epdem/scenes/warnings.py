@@ -24,7 +24,7 @@ SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
 ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = true"
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
-PRESSED = "pressures and springback deviate from finite elements (docs/choose.md, Pressing)"
+PRESSED = "pressures and springback deviate from finite elements (docs/press.md)"
 MISSED = 0.01  # of the duration of a phase
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
@@ -48,7 +48,7 @@ def _law(p: ScenePlan) -> list[str]:
         return []
     return [
         f"law.name = {p.model.law!r}: the pressures of a bed that is pressed with this law are not those of finite "
-        "elements (docs/choose.md, Pressing); take law.name = 'cavity' with finite_strain = true and compaction = true"
+        "elements (docs/press.md); take law.name = 'cavity' with finite_strain = true and compaction = true"
     ]
 
 

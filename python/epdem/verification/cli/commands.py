@@ -182,7 +182,7 @@ def contacts(
 ) -> None:
     """Run the tests of plastic contacts, which other codes can run, too: forces of prescribed motions, and impacts.
 
-    Default engines: embedded and liggghts. References and tolerances are in the files (docs/plastic_contacts.md).
+    Default engines: embedded and liggghts. References and tolerances are in the files (docs/evidence.md).
     """
     from ..contacts import compare
 
