@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from pages import markdown, replace_tables
+from pages import load, markdown, replace_tables, store
 
 from epdem.errors import CaseError
 from epdem.report.chart import GREY, Axis, Chart, Panel, Series, save
@@ -33,13 +33,6 @@ STEPS = {
 }
 
 
-def _inside(value: float, limits: tuple[float, float]) -> str:
-    """A number with how far it is beyond the published range, if it is."""
-    low, high = limits
-    beyond = min(value - low, 0.0) + max(value - high, 0.0)
-    return f"{value:.2f}" + (f" ({beyond:+.2f})" if abs(beyond) >= 0.005 else "")
-
-
 def solid(spheres: Path, low: float = -0.085, high: float = -0.065) -> float:
     """Solid fraction of the box between two heights [m], from the parts of all spheres in it (caps in closed form)."""
     table = pd.read_csv(spheres)
@@ -55,7 +48,8 @@ def _beds(path: Path) -> tuple[str, str]:
     return friction, seed
 
 
-def _impact_rows(runs: Path) -> tuple[list[str], list[Series]]:
+def _impact_runs(runs: Path) -> tuple[pd.DataFrame, list[Series]]:
+    """One row per run of the impact, displacements in mm and times in ms, and its curve."""
     rows, series, colours = [], [], [*MODELS, YADE]
     for model in colours:
         paths = sorted((runs / "impact_25k").glob(f"seed*/{model.replace('/', '_')}/{CURVE}"), key=_beds)
@@ -66,24 +60,38 @@ def _impact_rows(runs: Path) -> tuple[list[str], list[Series]]:
                 continue
             whole = np.arange(29.0, min(time[-1], 40.0) + 1e-6)
             places = np.interp(whole, time, moved)
-            name = "LIGGGHTS `hertz`" if model == "hertz" else "YADE" if model == YADE else f"`{model}`"
-            last = _inside(float(moved[-1]), AT_100) if time[-1] > 99.9 else f"run to {time[-1]:.0f} ms"
             friction, seed = _beds(path)
-            bed = f"{solid(path.parents[1] / 'spheres.csv'):.3f} ({friction or RAIN_FRICTION})"
-            deepest = f"{moved[time < 40.0].min():.2f}"
-            up = f"{np.interp(33.5, time, table[:, 2]):.2f}" if time[-1] > 33.5 else ""
-            cells = [name, seed, bed, _inside(float(places[1]), AT_30), _inside(float(places.min()), LOWEST)]
-            cells += [_inside(float(whole[places.argmin()]), LOWEST_TIME), deepest, up, last]
-            rows.append(f"| {' | '.join(cells)} |")
+            row = {"model": "YADE" if model == YADE else model, "seed": seed}
+            row |= {"rain_friction": friction or RAIN_FRICTION, "solid": solid(path.parents[1] / "spheres.csv")}
+            row |= {"at_30_ms": places[1], "lowest_at_whole_ms": places.min(), "time_of_lowest": whole[places.argmin()]}
+            row |= {"lowest": moved[time < 40.0].min()}
+            row |= {"speed_at_33.5_ms": np.interp(33.5, time, table[:, 2]) if time[-1] > 33.5 else np.nan}
+            rows.append(row | {"at_100_ms": moved[-1] if time[-1] > 99.9 else np.nan})
             dash = ("solid", "dash", "dot")[k % 3]
             series.append(Series("" if k else model, table[:, 0], table[:, 1] - START, colours.index(model), dash))
-    return rows, series
+    return pd.DataFrame(rows), series
 
 
-def _impact(runs: Path) -> str:
-    rows, series = _impact_rows(runs)
-    if not rows:
-        return ""
+def impact_table(rows: pd.DataFrame) -> str:
+    """The page's table: ranges of each model on beds whose rain had RAIN_FRICTION, below the published ranges."""
+    shown = {"at_30_ms": AT_30, "lowest_at_whole_ms": LOWEST, "time_of_lowest": LOWEST_TIME, "at_100_ms": AT_100}
+    lines = [{"model": "published, 7 codes, 10 seeds", "runs": ""} | {n: _range(*v) for n, v in shown.items()}]
+    for model, part in rows[rows["rain_friction"].astype(float) == float(RAIN_FRICTION)].groupby("model", sort=False):
+        line = {"model": f"`{model}`" if model != "YADE" else model, "runs": len(part)}
+        lines.append(line | {name: _range(part[name].min(), part[name].max()) for name in shown})
+    return markdown(pd.DataFrame(lines))
+
+
+def _range(low: float, high: float) -> str:
+    return "" if np.isnan(low) else f"{low:.5g}" if low == high else f"{low:.5g} to {high:.5g}"
+
+
+def _impact(runs: Path) -> None:
+    """The table of all runs and the figures, if runs are there."""
+    rows, series = _impact_runs(runs)
+    if rows.empty:
+        return
+    (ROOT / "docs/data/impact_25k.csv").write_text(rows.to_csv(index=False, float_format="%.5g"))
     for (low, high), time, name in ((AT_30, 0.030, "published range"), (LOWEST, 0.0315, ""), (AT_100, 0.1, "")):
         series.append(Series(name, [time, time], [1e-3 * low, 1e-3 * high], GREY, "solid", 0))
     alt = (
@@ -96,27 +104,17 @@ def _impact(runs: Path) -> str:
     )
     for name, panel in (("impact_25k", whole), ("impact_25k_lowest", low)):
         save(Chart(name, "A steel sphere hits 25,000 spheres", alt, [panel]), ROOT / "docs/figures", data=False)
-    spans = [f"{low:g} to {high:g}" for low, high in (AT_30, LOWEST, LOWEST_TIME, AT_100)]
-    published = f"| published, 7 codes | 10 seeds | not published | {' | '.join(spans[:3])} | | | {spans[3]} |"
-    head = ["model", "seed", "solid (rain's friction)", "at 30 ms", "lowest at whole ms", "ms", "lowest"]
-    head += ["m/s at 33.5 ms", "at 100 ms"]
-    head = [f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
-    return "\n".join([*head, published, *rows])
 
 
-def _drum(runs: Path) -> str:
-    names = ("left_below", "right_below", "left_above", "right_above")
-    lines = ["| t [s] | x < 0, z < 0 | x > 0, z < 0 | x < 0, z > 0 | x > 0, z > 0 |", "|---|---|---|---|---|"]
+def _drum(runs: Path) -> None:
+    """The table of spheres M1 in the quadrants of the drum, if the run is there."""
+    names = ["time", "left_below", "right_below", "left_above", "right_above"]
     try:
         measures = results.read(runs / "drum/seed1/ep_hertz/results.h5").tables["measures"]
     except CaseError:
-        return ""
-    for t in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 2.0, 3.0, 4.0, 5.0):
-        if t > measures["time"].max() + 1e-6:
-            break
-        row = measures.iloc[(measures["time"] - t).abs().argmin()]
-        lines.append(f"| {row['time']:.1f} | " + " | ".join(f"{row[n]:.0f}" for n in names) + " |")
-    return "\n".join(lines)
+        return
+    rows = [(measures["time"] - t).abs().argmin() for t in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 2.0, 3.0, 4.0, 5.0)]
+    (ROOT / "docs/data/drum.csv").write_text(measures.iloc[rows][names].to_csv(index=False, float_format="%.6g"))
 
 
 def _long(runs: Path) -> str:
@@ -144,13 +142,14 @@ def _points(points: pd.DataFrame) -> str:
 
 
 def main() -> None:
-    """Replace the tables between their marks by those of the runs that are there."""
+    """Write the tables of docs/data and of the page, of the runs that are there."""
     runs = ROOT / "runs/community"
     result = validate(out=ROOT / "runs/validate", force=True)
     save(validation_chart(result), ROOT / "docs/figures", data=False)
-    measured = markdown(result.summary)
-    tables = {"impact": _impact(runs), "drum": _drum(runs), "long": _long(runs), "measured": measured}
-    tables["points"] = _points(result.points)
+    store("measured", result.summary)
+    _impact(runs)
+    _drum(runs)
+    tables = {"impact": impact_table(load("impact_25k")), "long": _long(runs), "points": _points(result.points)}
     replace_tables("benchmarks", tables)
 
 
