@@ -156,7 +156,7 @@ def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     for _, _, text in of("jinja", f"{page}.md"):
         (tmp_path / "my.in.j2").write_text(text)
     play(blocks(page), tmp_path, cases=False)
-    assert list(tmp_path.glob("runs/*/report.html"))
+    assert list(tmp_path.glob("runs/**/report.html"))
 
 
 def test_no_page_has_blocks_that_no_test_runs():
