@@ -61,7 +61,7 @@ def _impact_runs(runs: Path) -> tuple[pd.DataFrame, list[Series]]:
             whole = np.arange(29.0, min(time[-1], 40.0) + 1e-6)
             places = np.interp(whole, time, moved)
             friction, seed = _beds(path)
-                        row: dict[str, object] = {"model": "YADE" if model == YADE else model, "seed": seed}
+            row: dict[str, object] = {"model": "YADE" if model == YADE else model, "seed": seed}
             row |= {"rain_friction": friction or RAIN_FRICTION, "solid": solid(path.parents[1] / "spheres.csv")}
             row |= {"at_30_ms": places[1], "lowest_at_whole_ms": places.min(), "time_of_lowest": whole[places.argmin()]}
             row |= {"lowest": moved[time < 40.0].min()}
