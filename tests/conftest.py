@@ -33,7 +33,7 @@ def figures(request, monkeypatch):
     """Figures are empty but in tests with the mark `figures`: the drawing of a curve takes half a second."""
     if not request.node.get_closest_marker("figures"):
         monkeypatch.setattr("epdem.report.chart.draw", blank)
-        monkeypatch.setattr("epdem.scenes.pictures.DPI", 10)
+        monkeypatch.setattr("epdem.report.pictures.DPI", 10)
 
 
 ENGINES = {"liggghts": "apt-get install liggghts libliggghts-dev libopenmpi-dev", "yade": "apt-get install yade"}

@@ -18,7 +18,7 @@ from epdem.base.declarations import declarations
 from epdem.cli.options import answer
 from epdem.engines import ENGINES
 from epdem.engines.citations import of_laws
-from epdem.scenes import report
+from epdem.scenes import summary
 from epdem.verification import engine_comparison as crosscheck
 
 STEEL = (CASES / "steel_wall.toml").read_text()
@@ -205,7 +205,7 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
         resumed_from=None,
         folder="[b]",
     )
-    answer(None, report.shown(outcome), as_json=False)
+    answer(None, summary.shown(outcome), as_json=False)
     out = capsys.readouterr().out
     assert TITLE in out and "[y]" in out and "warning: [/y]" in out and "see [b]/" in out
 

@@ -16,9 +16,10 @@ from calls import CASES, COMMANDS, call, make_sweep
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts import run as impacts_run
-from epdem.scenes import report as scenes_report
+from epdem.report import pages
 from epdem.scenes import run as scenes_run
-from epdem.studies import fit, pages
+from epdem.scenes import summary
+from epdem.studies import fit
 from epdem.studies.sweep import run as sweep_run
 from epdem.verification import contacts, cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
@@ -157,8 +158,8 @@ def library(tmp_path, monkeypatch, outcomes):
     record(impacts_run, "run", outcomes["run"])
     record(pages, "write_impacts_page", Path("page.html"))
     record(scenes_run, "run", SimpleNamespace(passed=True))
-    record(scenes_report, "shown", ())
-    record(scenes_report, "document", {})
+    record(summary, "shown", ())
+    record(summary, "document", {})
     record(pages, "write_scene_page", Path("page.html"))
     record(crosscheck, "crosscheck")
     record(motions, "compare")

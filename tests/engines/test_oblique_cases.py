@@ -19,13 +19,14 @@ from epdem.cli.main import app
 from epdem.cli.options import answer
 from epdem.engines import engine
 from epdem.errors import CaseError
-from epdem.impacts import report
+from epdem.impacts import summary
 from epdem.impacts.engine import oblique_pairs
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
+from epdem.report.impacts import save_figure
 
 CASE = Path(__file__).parents[2] / "cases" / "oblique_steel.toml"
 MU, NU = 0.3, 0.3
@@ -119,11 +120,11 @@ def test_liggghts_is_on_theory_and_says_so_in_table_document_and_figure(tmp_path
     # the torque arm of LIGGGHTS is shorter than R by half the overlap: 0.5 % at 2.8 m/s
     assert rows["psi_2_error"].max() < 0.025 and rows["e_n_error"].max() < 1e-3 and found.passed
     assert rows["psi_2_error"][rows["speed"] < 1].max() < 0.006
-    document = report.document(found)
+    document = summary.document(found)
     assert document["rows"][3]["psi_2"] == rows["psi_2"][3] and document["rows"][3]["rebound_angle"] > 0
-    answer(document, report.shown(found), as_json=False)
+    answer(document, summary.shown(found), as_json=False)
     assert "partial slip" in capsys.readouterr().out
-    assert report.figure(found).name == "psi.png"
+    assert save_figure(found).name == "psi.png"
 
 
 @pytest.mark.liggghts

@@ -11,7 +11,7 @@ from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
-from epdem.impacts.report import yielding
+from epdem.impacts.prediction_report import yielding
 
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
 STRENGTHS = {name: law.strength for name, law in declarations().items() if law.strength and not law.adheres}

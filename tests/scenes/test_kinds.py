@@ -16,9 +16,9 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import load
 from epdem.case.toml import portable_text, read_toml
 from epdem.errors import CaseError
+from epdem.report.pages import write_scene_page
 from epdem.scenes.measures import refuse_measures
 from epdem.scenes.plan import plan
-from epdem.studies.pages import write_scene_page, write_sweep_page
 from epdem.studies.sweep.run import plan as plan_sweep
 from epdem.studies.sweep.run import run as run_sweep
 
@@ -72,7 +72,7 @@ def test_a_kind_of_a_user_is_swept_and_viewed(mill):
     found = run_sweep(plan_sweep(mill, {"scene.count": "5,10"}), out)
     assert found.passed and found.table["particles_last"].tolist() == [5, 10]
     assert found.table.attrs["units"]["torque_max"] == "N m"
-    assert "torque" in write_sweep_page(found).read_text()
+    assert "torque" in found.report().read_text()
     subprocess.check_call([EPDEM, "view", str(mill), "-o", str(mill.parent / "view.png")], stdout=subprocess.DEVNULL)
     assert (mill.parent / "view.png").stat().st_size > 1000
 

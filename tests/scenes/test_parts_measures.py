@@ -16,14 +16,14 @@ from epdem.case.scene import parse
 from epdem.cli.options import answer
 from epdem.errors import CaseError
 from epdem.laws.strengths import LawSpec
-from epdem.scenes import measures, report
+from epdem.report.pages import write_scene_page
+from epdem.report.scenes import charts
+from epdem.report.scenes import measures as curves_of
+from epdem.scenes import measures, summary
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
-from epdem.scenes.report import charts
-from epdem.scenes.report import measures as curves_of
 from epdem.scenes.results import read
 from epdem.studies.fit import fit
-from epdem.studies.pages import write_scene_page
 from epdem.studies.sweep import run as study
 from epdem.studies.sweep.table import numbers_of
 
@@ -161,7 +161,7 @@ def test_an_angle_of_repose_comes_with_its_rings_and_in_degrees_for_readers():
     tables["measures"] = measures.curves(p, tables)
     assert np.degrees(tables["measures"]["angle"].to_numpy()) == pytest.approx(25.0, abs=0.01)
     assert tables["measures"]["angle_rings"].to_list() == [10, 8]
-    shown = report.measured(p, tables).iloc[0]
+    shown = summary.measured(p, tables).iloc[0]
     assert shown["kind"] == "repose of 8 rings" and shown["unit"] == "deg"
     assert float(shown["value"]) == pytest.approx(25.0, abs=0.01)
 
@@ -313,7 +313,7 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     (bins,) = drawn["scene_dents"].panels[0].series
     assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
     assert "Histograms" in write_scene_page(outcome).read_text()
-    answer(None, report.shown(outcome), as_json=False)
+    answer(None, summary.shown(outcome), as_json=False)
     said = capsys.readouterr().out
     dents = spheres_then.query("step == step.max()")["plastic_work"]
     assert f"{dents.mean():.5g}" in said and f" {found.measures['time'].iloc[-1]:.5g} " in said
@@ -368,9 +368,9 @@ def test_a_force_needs_no_frames_and_is_a_target(frames, tmp_path, capsys):
     outcome = run(path, out=tmp_path / "once")
     peak = -outcome.results.rows["floor_force_z"].min()
     assert peak > 0.01 and outcome.results.rows["lift"].to_list() == outcome.results.rows["floor_force_z"].to_list()
-    answer(None, report.shown(outcome), as_json=False)
+    answer(None, summary.shown(outcome), as_json=False)
     assert f"{-peak:.5g}" in capsys.readouterr().out
-    document = report.document(outcome)
+    document = summary.document(outcome)
     assert document["measures"][0]["lift"] == outcome.results.rows["lift"].iloc[-1]
     write_scene_page(outcome)
     if frames:  # a sweep and a fit of frames: test_a_measure_is_a_target_with_its_unit

@@ -14,10 +14,12 @@ from test_start_and_paths import PLATE
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes import checks, measures, pictures, report
+from epdem.report import pictures
+from epdem.report import scenes as figures
+from epdem.report.scenes import bed
+from epdem.scenes import checks, measures
 from epdem.scenes.checks import kinetic, rotation
 from epdem.scenes.plan import plan
-from epdem.scenes.report import bed
 
 pytestmark = pytest.mark.figures
 
@@ -28,7 +30,7 @@ def drawn(name: str):
     tables = scene_engine("liggghts").read(p, STORED / name)
     tables["measures"] = measures.curves(p, tables)
     tables["checks"] = checks.checks(p, tables)
-    (chart,) = report.key(p, tables)
+    (chart,) = figures.key(p, tables)
     return p, tables, chart.panels
 
 
@@ -105,7 +107,7 @@ def test_an_unknown_field_is_refused():
     data = parts()
     data["output"]["color"] = "omega_x"
     with pytest.raises(CaseError, match=r"output.color = 'omega_x': spheres of this scene have speed, energy, id"):
-        pictures.refuse_color(plan(parse(data)))
+        measures.refuse_color(plan(parse(data)))
 
 
 def test_translation_and_spin_are_counted_apart():

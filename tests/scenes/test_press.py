@@ -19,11 +19,12 @@ from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
 from epdem.engines.yade import deck as yade_deck
 from epdem.errors import CaseError
-from epdem.scenes import checks, report, stages
+from epdem.report.pages import scene_page, scene_sentences, write_scene_page
+from epdem.report.scenes import key
+from epdem.scenes import checks, stages, summary
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
-from epdem.studies.pages import scene_page, scene_sentences, write_scene_page
 from epdem.studies.soften import soften
 from epdem.studies.sweep.table import numbers_of, unit
 
@@ -130,7 +131,7 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
 
 def figures(outcome):
     """The panel of each figure of a press, by its heading."""
-    return {chart.heading: chart.panels[0] for chart in report.key(outcome.plan, outcome.results.tables)}
+    return {chart.heading: chart.panels[0] for chart in key(outcome.plan, outcome.results.tables)}
 
 
 @pytest.mark.liggghts
@@ -217,7 +218,7 @@ def test_page_terminal_figures_and_csv_have_the_same_numbers(pressed):
         rows = [re.findall(r"<td[^>]*>([^<]*)<", row) for row in table.split("<tr>")[2:]]
         seen |= in_si(heads, rows)
     assert {*seen} == {*ends} - {"step", "time", "porosity"} | {"passed"} and seen["passed"].count("yes") == 2
-    (shown,) = [x for x in report.shown(pressed) if isinstance(x, Table) and str(x.title) == "stages"]
+    (shown,) = [x for x in summary.shown(pressed) if isinstance(x, Table) and str(x.title) == "stages"]
     printed = in_si(
         [str(c.header) for c in shown.columns], zip(*(map(str, c.cells) for c in shown.columns), strict=True)
     )
@@ -262,7 +263,7 @@ def test_lines_go_through_three_stages_or_are_not_drawn(pressed):
     ):
         made = pd.concat([stage] * 3).assign(pressure=x, relative_density=solid, porosity=1.0 - solid)
         rows = tables["rows"].assign(relative_density=0.2)
-        found = report.key(p, tables | {"stages": made.reset_index(drop=True), "rows": rows})
+        found = key(p, tables | {"stages": made.reset_index(drop=True), "rows": rows})
         assert name in [series.name for chart in found for series in chart.panels[0].series]
 
 
@@ -531,7 +532,7 @@ def test_a_stage_beside_its_pressure_is_told_above_half_a_percent_and_fails_abov
         told = any("asked for" in x for x in stages.warnings(p, {"stages": table}))
         rows = pd.DataFrame({"particles": [COUNT]})
         found = checks.checks(p, {"rows": rows, "stages": table}).set_index("key")["passed"]
-        assert report.stages_shown(table)[0]["passed"].item() == (found["stage_pressure"] and found["density"])
+        assert summary.stages_shown(table)[0]["passed"].item() == (found["stage_pressure"] and found["density"])
         return told, bool(found["stage_pressure"]), bool(found["density"])
 
     assert verdicts(0.004) == (False, True, True)

@@ -13,7 +13,8 @@ from parts_cases import FLOOR, parts
 from stored_runs import data_of
 
 from epdem.case.scene import parse
-from epdem.scenes import checks, report
+from epdem.report import scenes as figures
+from epdem.scenes import checks
 from epdem.scenes.columns import named_rows
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
@@ -89,7 +90,7 @@ def test_the_mass_flow_is_the_slope_of_what_is_out_and_beverloo_s_that_of_the_bu
     bulk = 1e-5 * n * 0.5 * 0.95 / np.trapezoid(math.pi * radius**2, z)
     assert found["expected"] == pytest.approx(0.58 * bulk * math.sqrt(9.81) * (0.012 - 1.4 * 0.002) ** 2.5, rel=0.02)
     assert found["passed"] == (abs(found["value"] / found["expected"] - 1) <= 0.2)
-    drawn = report.OF_FRAMES["mass_flow"](p, {"particles": frames(p, spheres), "checks": pd.DataFrame([found])})
+    drawn = figures._mass_flow(p, {"particles": frames(p, spheres), "checks": pd.DataFrame([found])})
     assert drawn[0].series[1].name == f"Beverloo, {found['expected']:.3g} kg/s"
 
 

@@ -11,8 +11,8 @@ from parts_cases import BED, parts
 from scene_runs import run, write_case
 from test_parts_motions import PLATE
 
-from epdem.scenes.report import charts
-from epdem.studies.pages import write_scene_page
+from epdem.report.pages import write_scene_page
+from epdem.report.scenes import charts
 
 pytestmark = pytest.mark.figures
 

@@ -8,9 +8,9 @@ from scene_runs import run, write_case
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.impacts.prediction import predict
+from epdem.report.pages import scene_sentences as sentences
 from epdem.scenes.columns import STRAINS
 from epdem.scenes.timestep import impact
-from epdem.studies.pages import scene_sentences as sentences
 
 ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("yade", marks=pytest.mark.yade("module"))]
 

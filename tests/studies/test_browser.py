@@ -16,7 +16,7 @@ import pytest
 
 from epdem.engines import engine
 from epdem.impacts.run import run
-from epdem.studies.pages import write_impacts_page
+from epdem.report.pages import write_impacts_page
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium")

@@ -19,7 +19,7 @@ from epdem.case.impact import load
 from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
-from epdem.studies import pages
+from epdem.report import sweeps
 from epdem.studies.sweep import folder, local, run, slurm
 
 ROOT = Path(__file__).parents[2]
@@ -290,6 +290,11 @@ def test_points_on_liggghts_agree_with_the_embedded_engine(case, tmp_path):
     assert (tmp_path / "out" / found["folder"][0] / "thornton/liggghts/in.impact").exists()
 
 
+def restitution(found):
+    """The figures of the page of a sweep whose points are all done."""
+    return sweeps._restitution(found.table, [*found.sweep.points[0]], found.table.attrs["units"])
+
+
 @pytest.mark.figures
 def test_the_page_shows_e_n_over_the_keys_that_were_swept(tmp_path):
     """At one speed no figure is over it; a curve for each value of the other keys, and no two look the same."""
@@ -299,7 +304,7 @@ def test_the_page_shows_e_n_over_the_keys_that_were_swept(tmp_path):
         tmp_path / "out",
         {"law.yield_pressure": "1 GPa..3 GPa:3"} | {"materials.steel.density": "7000 kg/m^3,8000 kg/m^3"},
     )
-    over_pressure, over_density = pages._restitution(found, found.table.attrs["units"])
+    over_pressure, over_density = restitution(found)
     assert [str(chart.panels[0].x) for chart in (over_pressure, over_density)] == [
         "yield_pressure [Pa]",
         "density [kg/m^3]",
@@ -312,14 +317,14 @@ def test_the_page_shows_e_n_over_the_keys_that_were_swept(tmp_path):
     assert list(points[1].x) == table["law.yield_pressure"].to_list() == [1e9, 2e9, 3e9]
     assert list(points[1].y) == table["e_n"].to_list() and list(lines[1].y) == table["e_n_theory"].to_list()
     assert (over_pressure.readable().panels[0].series[0].x == [1000, 2000, 3000]).all()
-    text = pages.write_sweep_page(found).read_text()
+    text = found.report().read_text()
     assert "yield_pressure [MPa]" in text and 'data-chart="sweep"' in text
 
     ranges = {"law.yield_pressure": "1 GPa..3 GPa", "materials.steel.density": "7000 kg/m^3..8000 kg/m^3"}
     random = sweep(case, tmp_path / "random", ranges, latin_hypercube=9)
-    (series,) = pages._restitution(random, random.table.attrs["units"])[0].panels[0].series
+    (series,) = restitution(random)[0].panels[0].series
     assert len(series.x) == 9 and series.dash is None
 
     several = sweep(ball(tmp_path, '["0.1 m/s", "5 m/s"]'), tmp_path / "several", {"law.yield_pressure": "1 GPa,3 GPa"})
-    charts = pages._restitution(several, several.table.attrs["units"])
+    charts = restitution(several)
     assert [chart.panels[0].x.label for chart in charts] == ["yield_pressure", "speed"]

@@ -16,8 +16,8 @@ from epdem import Scene
 from epdem import run as api_run
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import EngineError
+from epdem.report.sweeps import _by_key
 from epdem.scenes import results
-from epdem.studies.pages import _by_key, write_sweep_page
 from epdem.studies.sweep import folder, run, slurm
 
 pytestmark = pytest.mark.liggghts
@@ -93,8 +93,8 @@ def test_the_page_shows_the_measures_of_the_case_first_and_every_number_that_cha
     bed.write_text(BED.replace("particles = 1\n", "particles = 4\n").replace("0.3 s", "0.02 s") + MEASURES)
     planned = run.plan(bed, {"scene.count": "10,20", "materials.glass.density": "2000 kg/m^3,3000 kg/m^3"})
     found = run.run(planned, tmp_path / "out")
-    page = write_sweep_page(found).read_text()
-    drawn = _by_key(found, found.table.attrs["units"])
+    page = found.report().read_text()
+    drawn = _by_key(found.table, [*found.sweep.points[0]], ["held", "top"], found.table.attrs["units"])
     assert re.findall(r'data-chart="([^"]+)"', page) == [chart.name for chart in drawn]
     assert [chart.panels[0].x.label for chart in drawn] == ["count", "density"]
     numbers = found.table.filter(regex="^(held|top|floor_load|spheres_in_room)(_|$)")  # measures and checks
@@ -115,7 +115,7 @@ def test_the_page_shows_the_measures_of_the_case_first_and_every_number_that_cha
 def test_a_key_with_one_value_a_point_has_lines_from_low_to_high(bed, tmp_path):
     bed.write_text(BED.replace("0.3 s", "0.02 s") + MEASURES)
     found = run.run(run.plan(bed, {"scene.count": "20,5,10"}), tmp_path / "out")
-    (chart,) = _by_key(found, {})
+    (chart,) = _by_key(found.table, ["scene.count"], ["held", "top"], {})
     series = [series for panel in chart.panels for series in panel.series]
     assert series and all(list(x.x) == [5, 10, 20] and x.dash is not None for x in series)
 

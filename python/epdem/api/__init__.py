@@ -91,13 +91,13 @@ class Run(_Finished):
 
     def plot(self) -> Path:
         """Draw e_n.png, restitution against speed with theory; its path."""
-        from ..impacts.report import figure
+        from ..report.impacts import save_figure
 
-        return figure(self.outcome)
+        return save_figure(self.outcome)
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..studies.pages import write_impacts_page
+        from ..report.pages import write_impacts_page
 
         return write_impacts_page(self.outcome)
 
@@ -122,7 +122,7 @@ class SceneRun(_Finished):
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..studies.pages import write_scene_page
+        from ..report.pages import write_scene_page
 
         return write_scene_page(self.outcome)
 

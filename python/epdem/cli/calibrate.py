@@ -72,7 +72,6 @@ def calibrate(
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> typer.Exit:
     from ..studies.fit import fit
-    from ..studies.pages import write_sweep_page
     from ..studies.sweep.points import settings
 
     targets = settings(target, "--target", "plate_force_max='12 N'")
@@ -84,6 +83,6 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
             f"  gives {name} = {value:.6g} {found.units[name]}".rstrip() + f" (target {found.targets[name]:.6g})"
         )
     counts = f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}"
-    page = write_sweep_page(found.sweep, [*said, counts])
+    page = found.sweep.report([*said, counts])
     known = {name: value for name, value in vars(found).items() if name != "sweep"}
     return answer(known, [*said, f"{counts}; see {page}"], as_json)

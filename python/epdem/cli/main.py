@@ -109,15 +109,15 @@ def _run_impacts(
 ) -> typer.Exit:
     """Run a case, write its page with the figure, print its table."""
     from ..engines import engine as find
-    from ..impacts import report
+    from ..impacts import summary
     from ..impacts.run import run
-    from ..studies.pages import write_impacts_page
+    from ..report.pages import write_impacts_page
 
     with status() as progress:
         outcome = run(case, engines=[find(name) for name in engines], progress=progress, **options)
         progress("figures")
         write_impacts_page(outcome, formats)
-    return answer(report.document(outcome), report.shown(outcome, full=full), as_json, outcome.passed)
+    return answer(summary.document(outcome), summary.shown(outcome, full=full), as_json, outcome.passed)
 
 
 @app.command()

@@ -71,7 +71,7 @@ def answer(document: object, shown: Iterable[Shown], as_json: bool, passed: bool
 
 def _value(value: Any) -> Any:
     """A table of a JSON document as a list of rows, a path as text."""
-    from ..impacts.report import records
+    from ..impacts.summary import records
 
     return str(value) if isinstance(value, Path) else records(value)
 

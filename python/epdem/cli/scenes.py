@@ -27,10 +27,10 @@ def run_scene(
     from ..base.tables import write_csv
     from ..case.scene import load
     from ..engines import scene_engine
-    from ..scenes import report
+    from ..report.pages import write_scene_page
+    from ..scenes import summary
     from ..scenes.plan import plan
     from ..scenes.run import run
-    from ..studies.pages import write_scene_page
 
     tool = scene_engine(engine)
     if csv and not plan(load(case)).contacts:
@@ -45,7 +45,7 @@ def run_scene(
     if csv:
         write_csv(outcome.folder / "contacts.csv", outcome.results.contacts)
     write_scene_page(outcome, formats)
-    return answer(report.document(outcome), report.shown(outcome), as_json, outcome.passed)
+    return answer(summary.document(outcome), summary.shown(outcome), as_json, outcome.passed)
 
 
 def view(
@@ -58,7 +58,7 @@ def view(
     from ..base.files import refuse_existing
     from ..case.scene import load
     from ..case.toml import error_context
-    from ..scenes import pictures
+    from ..report import pictures
     from ..scenes.plan import plan
 
     with error_context(case):

@@ -44,7 +44,6 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """Run a case or scene at many points; the same command again runs only missing and changed points."""
-    from ..studies.pages import write_sweep_page
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan
     from ..studies.sweep.run import run as run_points
@@ -82,7 +81,7 @@ def sweep(
             force=force,
             report=report,
         )
-    write_sweep_page(outcome)
+    outcome.report()
     raise _answer(outcome, as_json)
 
 

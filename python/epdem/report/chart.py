@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A figure as data (panels of lines and points with their axes), and its drawing for papers and pages in one style.
 
-A drawing is a PNG, SVG or PDF file with the data as CSV beside it, or an SVG element of a page. All that it shows
-follows from the figure as data, so that a drawing of equal data in the folder is used again.
+A drawing is a PNG, SVG or PDF file with the data as CSV beside it, or an SVG element of a page.
 """
 
 import csv
-import hashlib
 import io
 import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -154,30 +151,11 @@ VARIABLES = {"#000000": "ink", "#0072b2": "blue", "#8c564b": "brown"}  # of a pa
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-def fingerprint(source: str, *contents: object) -> str:
-    """Hash of all that a drawing shows: its contents by their repr, the `source` file that draws it, matplotlib."""
-    sha = hashlib.sha256(Path(source).read_bytes())
-    sha.update(repr((version("matplotlib"), contents)).encode())
-    return sha.hexdigest()
-
-
-def holds(path: Path, digest: str) -> bool:
-    """Whether a PNG file is the drawing with this fingerprint."""
-    return path.exists() and digest.encode() in path.read_bytes()
-
-
 class Drawing:
     """A chart and its figure, which is drawn and laid out once, when it is first needed."""
 
     def __init__(self, chart: Chart) -> None:
         self.chart = chart
-
-    @cached_property
-    def digest(self) -> str:
-        """The fingerprint; numbers count by the digits of the data as CSV."""
-        chart = self.chart
-        panels = [replace(p, series=[replace(s, x=(), y=()) for s in p.series]) for p in chart.panels]
-        return fingerprint(__file__, replace(chart, panels=panels, alt="", heading=""), chart.csv())
 
     @cached_property
     def figure(self) -> "Figure":
@@ -193,18 +171,13 @@ class Drawing:
 
     def save(self, folder: Path, formats: Sequence[str], *, data: bool = True) -> list[Path]:
         """A file of each of `formats` in `folder`, and the `data` as CSV; their paths."""
-        paths = [folder / f"{self.chart.name}.{kind}" for kind in formats]
-        for kind, path in zip(formats, paths, strict=True):
-            if kind != "png" or not holds(path, self.digest):
-                self._save(kind, path)
-        return paths + (write_texts(folder, {f"{self.chart.name}.csv": self.chart.csv()}) if data else [])
-
-    def _save(self, kind: str, path: Path) -> None:
         from matplotlib import rc_context
 
-        about = BARE_DATE[kind] | ({"Comment": self.digest} if kind == "png" else {})
-        with rc_context(STYLE), atomic(path) as temporary:  # type: ignore[arg-type]
-            self.figure.savefig(temporary, dpi=DPI, format=kind, metadata=about)
+        paths = [folder / f"{self.chart.name}.{kind}" for kind in formats]
+        for kind, path in zip(formats, paths, strict=True):
+            with rc_context(STYLE), atomic(path) as temporary:  # type: ignore[arg-type]
+                self.figure.savefig(temporary, dpi=DPI, format=kind, metadata=BARE_DATE[kind])
+        return paths + (write_texts(folder, {f"{self.chart.name}.csv": self.chart.csv()}) if data else [])
 
     def svg(self) -> str:
         """The chart without its title as an element `svg` of a page.

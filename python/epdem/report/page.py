@@ -5,8 +5,7 @@ A study hands over its parts: words, facts, charts, tables, listings, pictures. 
 """
 
 import base64
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -112,30 +111,23 @@ class Page:
     warnings: Sequence[str] = ()
 
 
-_DRAWN = re.compile(r'data-drawing="([0-9a-f]{64})">(<svg.*?</svg>)', re.S)
-
-
-def render(page: Page, drawn: Callable[[Drawing], str] = Drawing.svg) -> str:
-    """The page as HTML. drawn: the element `svg` of a drawing."""
+def render(page: Page, folder: Path = Path(), formats: Sequence[str] = ()) -> str:
+    """The page as HTML; a file of each of `formats` of its charts goes into `folder`."""
     from ..base import rendering  # slow to import
 
-    def drawing(chart: Chart) -> Drawing:
-        return Drawing(chart.readable())
+    def svg(chart: Chart) -> str:
+        drawing = Drawing(chart.readable())
+        if formats and chart.file:
+            drawing.save(folder, formats)
+        return drawing.svg()
 
-    return rendering.render("report/page.html.j2", page=page, drawing=drawing, drawn=drawn)
+    return rendering.render("report/page.html.j2", page=page, svg=svg)
 
 
 def write(path: Path, page: Page, formats: Sequence[str] = ()) -> Path:
     """Write a page to `path`, and beside it a file of each of `formats` of its charts; the path.
 
-    A figure of the page that was there shows the same if its fingerprint is the same. The caller claims the folder.
+    The caller claims the folder.
     """
-    before = dict(_DRAWN.findall(path.read_text(encoding="utf-8", errors="replace"))) if path.exists() else {}
-
-    def drawn(drawing: Drawing) -> str:
-        if formats and drawing.chart.file:
-            drawing.save(path.parent, formats)
-        return before.get(drawing.digest) or drawing.svg()
-
-    write_text(path, render(page, drawn), sync=False)
+    write_text(path, render(page, path.parent, formats), sync=False)
     return path

@@ -10,24 +10,32 @@ from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
-from .columns import bodies, columns_of_rows, last_frame, reduced
+from .columns import bodies, columns_of_frames, columns_of_rows, last_frame, reduced
 from .meshes import FloatArray
 from .model import pair_law
 from .plan import ScenePlan
-from .press_figures import FIGURES
 
 LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out
-OF_FRAMES = {"mass_flow": MassFlow, "rebound_speed": ReboundSpeed}  # key figures from frames, by their check
+# names of key figures: from frames, by their check; of a press
+FRAME_FIGURES = {"mass_flow": MassFlow, "rebound_speed": ReboundSpeed}
+PRESS_FIGURES = ("punch_force", "densification", "heckel", "kawakita", "springback", "side_pressure")
 SURFACE = 0.95  # of the mass of a bed, nearest to its middle: beyond it single spheres have rolled away
+
+
+def refuse_color(p: ScenePlan) -> None:
+    """Raise CaseError for a field of output.color that the frames do not hold."""
+    known = ["speed", "energy", *columns_of_frames(p)]
+    if p.output.color not in known:
+        raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
 
 
 def refuse_measures(p: ScenePlan) -> None:
     """Raise CaseError for measures and key figures that the scene cannot give."""
     s = p.scene
     names, taken = [m.name for m in s.measure], columns_of_rows(p)
-    figures = [*sorted({*taken, *names} - {"step", "time"}), *(FIGURES if s.stages else ())]
-    figures += [figure for figure, check in OF_FRAMES.items() if any(isinstance(c, check) for c in s.check)]
+    figures = [*sorted({*taken, *names} - {"step", "time"}), *(PRESS_FIGURES if s.stages else ())]
+    figures += [figure for figure, check in FRAME_FIGURES.items() if any(isinstance(c, check) for c in s.check)]
     if bad := next((name for name in s.key_figure if name not in figures), None):
         kind = "" if p.case.scene.kind == "parts" else f" of kind {p.case.scene.kind!r}"
         raise CaseError(

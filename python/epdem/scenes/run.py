@@ -17,7 +17,7 @@ from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Feature, Report, check, refusal, refuse_ranks, silent
 from ..jobs.stage import Inputs, Tables, inputs, without_comments
-from . import checks, measures, pictures, results, stages
+from . import checks, measures, results, stages
 from .plan import Resumed, SceneEngine, ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import lost_spheres, measured_warnings, passed_walls, planned_warnings
@@ -90,7 +90,7 @@ def run(
     with error_context(place):
         p = plan(model)
         measures.refuse_measures(p)
-        pictures.refuse_color(p)
+        measures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
         notes = [*check(engine, p), *planned_warnings(p), *case_warnings(model), *domain]
     planned(p)

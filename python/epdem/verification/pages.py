@@ -7,9 +7,9 @@ from pathlib import Path
 import pandas as pd
 
 from ..impacts.comparison import UNITS
+from ..report import pages as common
 from ..report.chart import GREY, Axis, Chart, Panel, Series
 from ..report.page import Facts, Page, Part, Rows
-from ..studies import pages as common
 from . import cost_report
 from .cost import Outcome as Cost
 from .engine_comparison import Crosscheck

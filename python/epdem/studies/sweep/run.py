@@ -152,11 +152,28 @@ class SweepOutcome:
         total = len(self.sweep.points)
         return [f"{len(all_)} of {total} points, here point {first}: {said}" for said, first, all_ in found.values()]
 
-    def report(self) -> Path:
-        """Write report.html, one page with figures and the table, into the folder; its path."""
-        from ..pages import write_sweep_page
+    def report(self, found: Sequence[str] = ()) -> Path:
+        """Write report.html, one page with figures and the table, into the folder; its path.
 
-        return write_sweep_page(self)
+        found: sentences on what a fit has found.
+        """
+        from ...report.sweeps import write_sweep_page
+
+        sweep = self.sweep
+        measures = [m["name"] for m in sweep.tables["scene"].get("measure", [])] if sweep.scene else None
+        return write_sweep_page(
+            self.folder,
+            self.table,
+            name=sweep.name,
+            engines=sweep.engines,
+            keys=[*sweep.points[0]],
+            measures=measures,
+            case=sweep.case,
+            versions=sweep.versions,
+            passed=self.passed,
+            warnings=self.warnings,
+            found=found,
+        )
 
     def __repr__(self) -> str:
         states = ", ".join(f"{n} {state}" for state in store.STATES if (n := self.count(state)))

@@ -1,29 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The output of a scene: its charts as data, the picture of its bed, checks, summary, JSON."""
+"""Figures of a scene as data, and the picture of its bed."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
-from ..base import readable
 from ..base.readable import in_words
-from ..base.terminal import Shown, cell, frame_table, heads, warned
 from ..case.outputs import MassFlow, ReboundSpeed
-from ..case.parts import MEASURES, Histogram, Load, Repose
+from ..case.parts import MEASURES, Histogram
 from ..case.walls import LinearMove
-from ..impacts.report import records
-from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
-from ..report.page import Picture
-from . import checks, pictures, press_figures, stages
-from .columns import LOADS, place, units
-from .measures import curve, values_of
-from .plan import ScenePlan
-from .run import SceneOutcome
+from ..jobs.stage import Tables
+from ..scenes import checks
+from ..scenes.columns import LOADS, place, units
+from ..scenes.measures import FRAME_FIGURES, PRESS_FIGURES, curve
+from ..scenes.plan import ScenePlan
+from ..scenes.run import SceneOutcome
+from . import pictures, press
+from .chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
+from .page import Picture
 
-Tables = dict[str, pd.DataFrame]
 TIME = Axis("time", "s")
 BINS = 30
 COLOURS = {
@@ -37,9 +33,6 @@ COLOURS = {
 }
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
-FIRST = ("phase", "asked", "reached", "error", "passed", "relative_density", "springback", "height")  # of stages
-SHARES = ("error", "springback")  # in percent for readers
-CHECKED = {name: name for name in ("check", "value", "expected", "unit", "error", "tolerance")} | {"passed": "pass"}
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
@@ -209,9 +202,9 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     return found
 
 
-OF_FRAMES: dict[str, Callable[[ScenePlan, Tables], list[Panel]]] = {
-    "mass_flow": _mass_flow,
-    "rebound_speed": _rebound_speed,
+OF_CHECK: dict[type, Callable[[ScenePlan, Tables], list[Panel]]] = {
+    MassFlow: _mass_flow,
+    ReboundSpeed: _rebound_speed,
 }
 
 
@@ -219,11 +212,11 @@ def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
     """The panels of the key figure, which share their x axis; none where the tables lack the data."""
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
     found: list[Panel] = []
-    for name in (name for name in p.scene.key_figure if name not in press_figures.FIGURES):
-        if name not in OF_FRAMES:
+    for name in (name for name in p.scene.key_figure if name not in PRESS_FIGURES):
+        if name not in FRAME_FIGURES:
             found += _column(p, tables, name)
         elif frames:
-            found += OF_FRAMES[name](p, tables)
+            found += OF_CHECK[FRAME_FIGURES[name]](p, tables)
     return found if p.scene.key_figure else _moving_walls(p, tables)
 
 
@@ -233,105 +226,8 @@ def key(p: ScenePlan, tables: Tables) -> list[Chart]:
     if shared := panels(p, tables):
         said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in shared))
         found.append(Chart("key", title, f"{said}.", shared, heading=f"Key figure: {said}"))
-    for name in (name for name in p.scene.key_figure if name in press_figures.FIGURES):
-        figure = press_figures.FIGURES[name]
+    for name in (name for name in p.scene.key_figure if name in PRESS_FIGURES):
+        figure = press.FIGURES[name]
         if drawn := figure.panels(p, tables):
             found.append(Chart(name if found else "key", title, figure.caption, drawn, heading=figure.heading))
     return found
-
-
-def document(outcome: SceneOutcome) -> dict[str, object]:
-    """The JSON document of a run of a scene; a measure has its last frame, or of a force or torque its last row."""
-    tables, measured = outcome.results.tables, list[dict[str, object]]()
-    if outcome.plan.scene.measure:
-        row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))
-        loads = [m for m in outcome.plan.scene.measure if isinstance(m, Load)]
-        measured = [row[0] | {m.name: float(curve(m, tables)[1][-1]) for m in loads}]
-    return {
-        "case": outcome.case.name,
-        "kind": outcome.case.kind,
-        "passed": outcome.passed,
-        "steps": outcome.plan.steps,
-        "time_step": outcome.plan.time_step,
-        "seconds": outcome.seconds,
-        "reused": outcome.reused,
-        "resumed_from": outcome.resumed_from,
-        "warnings": outcome.warnings,
-        "checks": records(tables["checks"]),
-        "measures": measured,
-        "stages": records(tables["stages"]) if "stages" in tables else [],
-        "last_row": records(tables["rows"].tail(1))[0],
-        "units": units(tables["rows"]),
-    }
-
-
-def shown(outcome: SceneOutcome) -> list[Shown]:
-    """Checks, measures, stages, warnings and a summary line."""
-    p, tables = outcome.plan, outcome.results.tables
-    found: list[Shown] = []
-    if len(tables["checks"]):
-        found.append(frame_table(outcome.case.case.title, checked(tables["checks"]), CHECKED))
-    if p.scene.measure:
-        found.append(frame_table("measures", measured(p, tables)))
-    if "stages" in tables:
-        table, known = stages_shown(tables["stages"])
-        found.append(frame_table("stages", table, heads(table, known)))
-    came = " (from results.h5)" if outcome.reused else ""
-    if outcome.resumed_from is not None:
-        came = f" (continued from step {outcome.resumed_from})"
-    summary = (
-        f"{outcome.case.name}: {int(tables['rows']['particles'].iloc[-1])} spheres, {p.steps} steps of "
-        f"{p.time_step:g} s, {outcome.seconds:.1f} s{came}; see {outcome.folder}/report.html"
-    )
-    return [*found, *stages.against_measured(p, tables), *warned(outcome.warnings), summary]
-
-
-def checked(table: pd.DataFrame) -> pd.DataFrame:
-    """The checks in units that readers know."""
-    return readable.rows(table, ("value", "expected"))[[*CHECKED]]
-
-
-def stages_shown(table: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
-    """The stages of a press with what a reader asks for first, and the units of their columns; shares in percent."""
-    names = [*FIRST, *(name for name in table if name not in (*FIRST, "step", "time", "porosity"))]
-    shown = table.assign(**{name: 100.0 * table[name] for name in SHARES})
-    good = (table["error"].abs() <= checks.STAGE) & (table["relative_density"] < 1.0)
-    shown["passed"] = [bool(x) if asked else math.nan for x, asked in zip(good, table["asked"].notna(), strict=True)]
-    return readable.columns(shown[names], units(table) | dict.fromkeys(SHARES, "%"))
-
-
-def results(p: ScenePlan, tables: Tables) -> list[str]:
-    """A sentence for each measure with its last value, and one on the stages of a press."""
-    said = []
-    if p.scene.measure:
-        for row in measured(p, tables).to_dict("records"):
-            value = f"{cell(row['value'])} {row['unit']}".rstrip()
-            at = "" if row["kind"].endswith(", mean") else f" at {row['time [s]']:.4g} s"
-            said.append(f"{row['measure']} ({row['kind']}): {value}{at}.")
-    if "stages" in tables:
-        known = tables["stages"][tables["stages"]["asked"].notna()]
-        ends = [f"{d:.3f} at {in_words(x, 'Pa')}" for d, x in known[["relative_density", "reached"]].to_numpy()]
-        back = tables["stages"]["springback"].dropna()
-        percent = ", ".join(f"{100.0 * x:.3g}" for x in back)
-        said.append(f"Relative density: {', '.join(ends)}." + f" Springback: {percent} %." * bool(percent))
-    return said
-
-
-def measured(p: ScenePlan, tables: Tables) -> pd.DataFrame:
-    """The last value of each measure and its limits, in units that readers know."""
-    found = []
-    for m in p.scene.measure:
-        if isinstance(m, Histogram):
-            values = values_of(p, m, tables)
-            kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
-            time = tables["measures"]["time"].iloc[-1]
-        else:
-            times, values = curve(m, tables)
-            kind, value, time = m.kind, float(values[-1]), times[-1]
-            if isinstance(m, Repose):
-                kind += f" of {tables['measures'][f'{m.name}_rings'].iloc[-1]:.0f} rings"
-        known = values[np.isfinite(values)]
-        limits = (known.min(), known.max()) if known.size else (math.nan, math.nan)
-        found.append((m.name, kind, time, value, *limits, MEASURES[m.kind].unit))
-    numbers = ("value", "smallest", "largest")
-    return readable.rows(pd.DataFrame(found, columns=["measure", "kind", "time [s]", *numbers, "unit"]), numbers)

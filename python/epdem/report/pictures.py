@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
 
-import hashlib
 import math
 from pathlib import Path
 from typing import Any
@@ -13,12 +12,12 @@ from ..base.files import atomic
 from ..base.readable import in_words
 from ..case.walls import Room
 from ..errors import CaseError
-from ..report.chart import Axis, fingerprint, holds
-from . import placement
-from .checks import kinetic
-from .columns import columns_of_frames, last_frame, units
-from .meshes import FloatArray, at_end, box, sheet, tube
-from .plan import Phase, ScenePlan
+from ..scenes import placement
+from ..scenes.checks import kinetic
+from ..scenes.columns import last_frame, units
+from ..scenes.meshes import FloatArray, at_end, box, sheet, tube
+from ..scenes.plan import Phase, ScenePlan
+from .chart import Axis
 
 AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
 DPI = 200
@@ -52,13 +51,6 @@ def coloured(spheres: pd.DataFrame) -> pd.DataFrame:
     """The spheres with their speed [m/s] and energy [J] beside the columns of the frames: fields of output.color."""
     speed = np.sqrt((spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1))
     return spheres.assign(speed=speed, energy=kinetic(spheres))
-
-
-def refuse_color(p: ScenePlan) -> None:
-    """Raise CaseError for a field of output.color that the frames do not hold."""
-    known = ["speed", "energy", *columns_of_frames(p)]
-    if p.output.color not in known:
-        raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
 
 
 Walls = tuple[list[FloatArray], list[FloatArray]]  # triangles (n, 3 corners, 3) of each wall, outlines of planes (4, 3)
@@ -132,9 +124,9 @@ def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any
     return fig, axis
 
 
-def _save(fig: Any, path: Path, about: dict[str, str] | None = None) -> None:
+def _save(fig: Any, path: Path) -> None:
     with atomic(path) as temporary:
-        fig.savefig(temporary, dpi=DPI, metadata=about)
+        fig.savefig(temporary, dpi=DPI)
 
 
 def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> str:
@@ -148,10 +140,7 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> str:
     walls = _walls(p, at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles), p.phases[-1])
     title, label = p.case.case.title, str(Axis(p.output.color, units(last).get(p.output.color, "")))
     time = float(p.time_at(last["step"].to_numpy()[:1])[0])
-    numbers = hashlib.sha256(b"".join(array.tobytes() for array in (x, radius, values, *walls[0], *walls[1])))
-    digest = fingerprint(__file__, title, label, DPI, numbers.hexdigest())
-    if not holds(path, digest):
-        _save(_bed(title, x, radius, values, label, walls), path, {"Comment": digest})
+    _save(_bed(title, x, radius, values, label, walls), path)
     return f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
 
 

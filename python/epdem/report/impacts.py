@@ -4,23 +4,36 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
+from ..base.files import claim
+from ..impacts import oblique
+from ..impacts.comparison import CHECKED
+from ..impacts.experiment import Experiment
+from ..impacts.prediction import Prediction, predict
+from ..impacts.run import Outcome
 from ..theory.printed import wu_restitution
 from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
-from . import oblique
-from .comparison import CHECKED
-from .experiment import Experiment
-from .prediction import Prediction, predict
-from .run import Outcome
+from .chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, save
 
 FINE = 240  # speeds of a line of theory
 SLIPS = 80  # of a line of theory
 ROUND_OFF = 1e-14  # errors below are zeros
 MEASURED = 5  # kind of the points of a measurement, which engines do not reach
 SPEED = Axis("speed", "m/s", log=True)
+
+
+def charts(outcome: Outcome) -> list[Chart]:
+    """The figures of the page."""
+    return [main_chart(outcome), errors(outcome), *loops(outcome)]
+
+
+def save_figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
+    """Draw the main figure into the folder of a run; the first of its files."""
+    with claim(outcome.folder, force=True):
+        return save(main_chart(outcome), outcome.folder, formats)[0]
 
 
 def main_chart(outcome: Outcome) -> Chart:

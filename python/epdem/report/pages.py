@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages of runs, scenes and sweeps, and the parts that several pages have."""
+"""Pages of impacts and scenes, and the parts that several pages have."""
 
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
-import pandas as pd
 
 from ..base import __version__
 from ..base.files import claim
@@ -16,28 +12,21 @@ from ..base.paths import product_hash
 from ..base.readable import in_words
 from ..engines import texts_with_reasons
 from ..engines.citations import citations
-from ..impacts import charts
-from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
 from ..impacts.plan import Plan
 from ..impacts.prediction_report import yielding
-from ..impacts.report import against_measured, largest_errors
 from ..impacts.run import Outcome
+from ..impacts.summary import against_measured, largest_errors
 from ..laws.strengths import find_law
-from ..report.chart import PALETTE, Axis, Chart, Dash, Panel, Series
-from ..report.page import NAME, Facts, Lines, Page, Part, Rows, write
-from ..scenes.checks import CHECKS
 from ..scenes.columns import STRAINS, units
 from ..scenes.plan import ScenePlan
-from ..scenes.report import FIRST, bed, checked, stages_shown
-from ..scenes.report import charts as charts_of_scene
-from ..scenes.report import results as results_of_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.stages import against_measured as against_measured_densities
+from ..scenes.summary import FIRST, checked, results, stages_shown
 from ..theory.validity import SMALL_DEFORMATION
-from .sweep.folder import DONE, FAILED
-from .sweep.run import SweepOutcome
+from . import impacts, scenes
+from .page import NAME, Facts, Lines, Page, Part, Rows, write
 
 
 def command() -> str:
@@ -107,7 +96,7 @@ def write_impacts_page(outcome: Outcome, formats: Sequence[str] = ()) -> Path:
 def impacts_page(outcome: Outcome, command: str = "") -> Page:
     """The page of a run."""
     results, several = outcome.results, len(outcome.plans) > 1
-    parts: list[Part] = [*impacts_figures(outcome), impacts_table(outcome)]
+    parts: list[Part] = [*impacts.charts(outcome), impacts_table(outcome)]
     for law, p in outcome.plans.items():
         parts.append(Facts("Bodies and law" + f" {law}" * several, _impact_facts(p.experiment)))
     allowed = {name: f"{value:g}" for name, value in outcome.case.tolerances.model_dump().items()}
@@ -147,11 +136,6 @@ def impacts_sentences(outcome: Outcome) -> list[str]:
     return said
 
 
-def impacts_figures(outcome: Outcome) -> list[Chart]:
-    """The figures of the page."""
-    return [charts.main_chart(outcome), charts.errors(outcome), *charts.loops(outcome)]
-
-
 def impacts_table(outcome: Outcome) -> Rows:
     """All rows of the comparison."""
     rows = outcome.results.comparison
@@ -165,7 +149,7 @@ def _impact_facts(x: Experiment) -> dict[str, str]:
     units = {p.name: p.unit for p in find_law(x.law.name).parameters if p.unit != "1"}
     facts |= {name: in_words(value, units.get(name, ""), 6) for name, value in x.law.shown().items()}
     facts |= {"E*": in_words(x.E_star, "Pa", 6), "R*": in_words(x.R_star, "m", 6), "m*": f"{x.m_star:.6g} kg"}
-    v_y0 = charts.first_yield(x)
+    v_y0 = impacts.first_yield(x)
     facts |= {"speed of first yield (8.84, 1.60 Y)": f"{v_y0:.4g} m/s"} if v_y0 == v_y0 else {}
     return facts | {"source": x.source}
 
@@ -214,13 +198,13 @@ def write_scene_page(outcome: SceneOutcome, formats: Sequence[str] = ()) -> Path
 def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
-    shown = charts_of_scene(outcome)
+    shown = scenes.charts(outcome)
     engine = str(about["engine"])
     parts: list[Part] = []
     if "stages" in tables:
         table, known = stages_shown(tables["stages"])
         parts.append(Rows("Stages", table[[*FIRST]], known, "The end of each phase."))
-    parts += [*shown[:1], *bed(outcome), *shown[1:]]
+    parts += [*shown[:1], *scenes.bed(outcome), *shown[1:]]
     if "stages" in tables:
         more = table.drop(columns=[*FIRST[1:]])
         parts.append(Rows("Plates, sides and energies at the end of each phase", more, known, AFTER_RELEASE))
@@ -249,7 +233,7 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
     last, checks = tables["rows"].iloc[-1], tables["checks"]
     failed = ", ".join(checks["check"][~checks["passed"].astype(bool)])
     about = outcome.results.attributes
-    said = results_of_scene(p, tables)
+    said = results(p, tables)
     said += [
         f"A scene of kind {outcome.case.kind} with law {p.model.law} in {about['engine']} (MPI ranks: "
         f"{about['ranks']}): {p.steps} steps of {p.time_step:.4g} s took {float(str(about['seconds'])):.3g} s.",
@@ -272,120 +256,3 @@ def _scene_facts(outcome: SceneOutcome) -> Facts:
     facts |= {"steps": str(p.steps), "smallest radius": in_words(p.smallest, "m"), "materials": ", ".join(p.types)}
     phases = [f"{x.name} up to step {x.end}" + f" (until {x.reached})" * bool(x.reached) for x in p.phases]
     return Facts("The scene", facts | {"phases": ", ".join(phases)})
-
-
-KINDS = ("last", "min", "max", "mean")  # numbers of one column of a scene
-DASHES: tuple[Dash, ...] = ("solid", "dash", "dashdot", "dot")  # a curve over another one leaves it visible
-PANEL_COLUMNS, MOST_PANELS = 3, 30  # of a chart
-
-
-def write_sweep_page(result: SweepOutcome, found: Sequence[str] = ()) -> Path:
-    """Write the page of a sweep into its folder; found: sentences on what a fit has found."""
-    table, sweep = result.table, result.sweep
-    units = table.attrs.get("units", {})
-    failed = table[table["status"] == FAILED][["point", "folder", "reason"]]
-    said = f"{len(sweep.points)} points on {', '.join(sweep.engines)}: {result.count(DONE)} done, {len(failed)} failed."
-    parts: list[Part] = [*(_by_key(result, units) if sweep.scene else _restitution(result, units))]
-    parts += [Rows("Failed points", failed)] if len(failed) else []
-    rows = table.drop(columns=["folder", "reason"])
-    parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
-    parts += [case_lines(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
-    title = f"Sweep of {sweep.name}"
-    page = Page(title, [said, *found], parts, passed=result.passed, command=command(), warnings=result.warnings)
-    return write_study_page(page, result.folder)
-
-
-def _evenly(values: np.ndarray) -> np.ndarray:
-    """As many of the values as there are colours, the first and the last among them."""
-    places = np.linspace(0, len(values) - 1, min(len(PALETTE), len(values))).round().astype(int)
-    return values[np.unique(places)] if len(values) else values
-
-
-def _restitution(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
-    """e_n over each key that has several numbers, a curve for each value of the other keys; and over the speed."""
-    table = result.table[result.table["status"] == DONE]
-    keys = [name for name in result.sweep.points[0] if name in table] if len(table) else []
-    speeds = table["speed"].nunique() if len(table) else 0
-    numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1]
-    over = {key: Axis(key.rpartition(".")[2], units.get(key, "")) for key in numeric}
-    over |= {"speed": SPEED} if speeds > 1 or not numeric else {}
-    charts = [_over(table, x, axis, [*keys, "speed"], units) for x, axis in over.items()]
-    return [replace(charts[0], name="sweep"), *charts[1:]]
-
-
-def _over(table: pd.DataFrame, x: str, axis: Axis, keys: list[str], units: dict[str, str]) -> Chart:
-    """e_n over x, theory as lines and engines as points, for some of the values of the other `keys`."""
-    others = [name for name in keys if name != x and table[name].nunique() > 1]
-    lines = not others or bool((table.groupby(others)[x].nunique() > 1).any())
-    if not lines:  # random points: all of a speed, without a line
-        others = [name for name in others if name == "speed"]
-    curves = [*table.groupby(others, sort=False)] if others else [((), table)]
-    series: list[Series] = []
-    for k, n in enumerate(_evenly(np.arange(len(curves)))):
-        values, part = curves[n]
-        said = ", ".join(_said(name, value, units) for name, value in zip(others, values, strict=True))
-        for i, ((engine, law), rows) in enumerate(part.groupby(["engine", "law"], sort=False)):
-            rows = rows.sort_values(x)
-            at, label = rows[x].to_numpy(float), f"{engine}, {law}" + f": {said}" * bool(said)
-            if lines:
-                series.append(Series("", at, rows["e_n_theory"].to_numpy(float), k, DASHES[k % len(DASHES)]))
-            series.append(Series(label, at, rows["e_n"].to_numpy(float), k, None, k + i))
-    alt = f"Coefficient of restitution against {x}: {'theory as lines, ' * lines}engines as points."
-    if len(curves) > len(PALETTE):
-        alt += f" {len(PALETTE)} of {len(curves)} curves."
-    return Chart(f"sweep_{x}", f"Restitution against {axis.label}", alt, [Panel(axis, Axis("e_n"), series)])
-
-
-def _said(name: str, value: object, units: dict[str, str]) -> str:
-    text = in_words(value, units.get(name, "")) if isinstance(value, float) else str(value)
-    return f"{name.rpartition('.')[2]} = {text}"
-
-
-def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
-    """For each key with several values, the numbers of the scenes that change: the measures of the case and the checks,
-    of a case without measures all columns."""
-    table = result.table[result.table["status"] == DONE]
-    keys = [name for name in result.sweep.points[0] if name in table]
-    numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1] or ["point"]
-    changing = _changing(table.drop(columns=["point", *keys]))
-    measured = [m["name"] for m in result.sweep.tables.get("scene", {}).get("measure", [])]
-    wanted = [column for column in changing if not measured or column in measured or column in CHECKS]
-    columns = sorted(wanted or changing, key=lambda column: column not in measured)  # stable: else as in the table
-    shown = columns[:MOST_PANELS]
-    left = [column for column in changing if column not in shown]
-    charts = []
-    for key in numeric:
-        x = Axis(key.rpartition(".")[2], units.get(key, ""))
-        lines = table[key].is_unique
-        panels = [Panel(x, _axis(y, changing[y], units), _series(table, key, y, changing[y], lines)) for y in shown]
-        alt = f"Against {key}: {', '.join(shown)}." + (f" {len(left)} columns are in the table alone." if left else "")
-        name = "sweep" if key == numeric[0] else f"sweep_{key}"
-        if panels:
-            charts.append(Chart(name, f"Results against {key}", alt, panels, columns=min(PANEL_COLUMNS, len(panels))))
-    return charts
-
-
-def _changing(table: pd.DataFrame) -> dict[str, list[str]]:
-    """The columns of a scene whose numbers change over the points, each with the kinds of its numbers; "": a check."""
-    found: dict[str, list[str]] = {}
-    for name in table.select_dtypes("number"):
-        if table[name].nunique() > 1:
-            column, _, kind = str(name).rpartition("_")
-            plain = kind not in KINDS
-            found.setdefault(str(name) if plain else column, []).append("" if plain else kind)
-    return found
-
-
-def _axis(column: str, kinds: list[str], units: dict[str, str]) -> Axis:
-    return Axis(column, units.get("_".join(filter(None, (column, kinds[0]))), ""))
-
-
-def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines: bool) -> list[Series]:
-    """The numbers of a column over a key; lines: whether a line joins the points, of one value for each key."""
-    table = table.sort_values(key)
-    x, series = table[key].to_numpy(float), []
-    for kind in kinds:
-        k = KINDS.index(kind) if kind else len(KINDS)  # a check may have the name of a column
-        y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
-        series.append(Series(kind or "check", x, y, k, DASHES[k % len(DASHES)] if lines else None, k))
-    return series

@@ -9,11 +9,12 @@ import numpy as np
 import pandas as pd
 
 from ..base.readable import in_words
-from ..report.chart import GREY, INK, PALETTE, Axis, Panel, Series
-from . import stages
-from .plan import ScenePlan
+from ..jobs.stage import Tables
+from ..scenes import stages
+from ..scenes.measures import PRESS_FIGURES
+from ..scenes.plan import ScenePlan
+from .chart import GREY, INK, PALETTE, Axis, Panel, Series
 
-Tables = dict[str, pd.DataFrame]
 MEASURED_POINTS = 5  # kind of marker, as of measured impacts
 PRESSURE = Axis("pressure", "Pa")
 LEAST_POINTS = 3  # of a line through stages
@@ -161,25 +162,33 @@ class Figure:
 
 
 ENDS = f"the ends of loading below a relative density of {stages.FITTED}."
-FIGURES = {
-    "punch_force": Figure(
-        "Force over displacement",
-        "Force on the punch over the way by which the plates have approached; markers: ends of the stages.",
-        force,
-    ),
-    "densification": Figure(
-        "Density over pressure",
-        "Relative density over the pressure on the punch; circles: ends of the phases.",
-        densification,
-    ),
-    "heckel": Figure("Heckel's line", f"The largest pressure so far, and Heckel's line through {ENDS}", heckel),
-    "kawakita": Figure("Kawakita's line", f"C: reduction of the volume. Kawakita's line goes through {ENDS}", kawakita),
-    "springback": Figure(
-        "Springback", "Axial strain since the end of loading over the pressure that is left on the punch.", springback
-    ),
-    "side_pressure": Figure(
-        "Pressure on the sides by height",
-        "Normal force on the sides over their area, in slices of the bed, at the end of each loading.",
-        sides,
-    ),
-}
+FIGURES = dict(
+    zip(
+        PRESS_FIGURES,
+        (
+            Figure(
+                "Force over displacement",
+                "Force on the punch over the way by which the plates have approached; markers: ends of the stages.",
+                force,
+            ),
+            Figure(
+                "Density over pressure",
+                "Relative density over the pressure on the punch; circles: ends of the phases.",
+                densification,
+            ),
+            Figure("Heckel's line", f"The largest pressure so far, and Heckel's line through {ENDS}", heckel),
+            Figure("Kawakita's line", f"C: reduction of the volume. Kawakita's line goes through {ENDS}", kawakita),
+            Figure(
+                "Springback",
+                "Axial strain since the end of loading over the pressure that is left on the punch.",
+                springback,
+            ),
+            Figure(
+                "Pressure on the sides by height",
+                "Normal force on the sides over their area, in slices of the bed, at the end of each loading.",
+                sides,
+            ),
+        ),
+        strict=True,
+    )
+)

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tables, JSON and the figure of a run."""
+"""Summary of a run for the terminal and as JSON."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from rich.table import Table
 
-from ..base.files import claim
 from ..base.terminal import Shown, frame_table, warned
 from .comparison import CHECKED
 from .prediction import predict
@@ -152,12 +149,3 @@ def shown(outcome: Outcome, *, full: bool = False) -> list[Shown]:
     cut = [f"{few} of {all_rows} rows; --full prints all"] if few < all_rows else []
     lines = [*cut, *largest_errors(outcome), *against_measured(outcome)]
     return [run_table(outcome, full=full), *lines, *warned(outcome.warnings), summary(outcome)]
-
-
-def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
-    """Draw e_n, restitution against speed with theory and errors, or psi if oblique; the first of its files."""
-    from ..report.chart import save
-    from .charts import main_chart
-
-    with claim(outcome.folder, force=True):
-        return save(main_chart(outcome), outcome.folder, formats)[0]
