@@ -15,7 +15,8 @@ from epdem.laws.library import Law
 from epdem.theory import pair, restitution
 from epdem.theory.thornton import Thornton
 
-PAGE = (Path(__file__).parents[2] / "docs/embed.md").read_text()
+ROOT = Path(__file__).parents[2]
+PAGE, PROGRAM = (ROOT / "docs/embed.md").read_text(), ROOT / "data/embed"
 
 PROJECT = """cmake_minimum_required(VERSION 3.20)
 project(stranger LANGUAGES C CXX)
@@ -70,9 +71,8 @@ def test_a_stranger_builds_with_the_installed_package(tmp_path):
 @pytest.fixture(scope="module")
 def spheres(tmp_path_factory):
     """Runs the program of the page: side, time step, number of steps, rows of x and v; rows at the end."""
-    code = dict(re.findall(r"^```(cmake|cpp)\n(.*?)^```$", PAGE, re.M | re.S))
-    folder = tmp_path_factory.mktemp("spheres")
-    program = build(folder, {"CMakeLists.txt": code["cmake"], "spheres.cpp": code["cpp"]}) / "spheres"
+    files = {path.name: path.read_text() for path in PROGRAM.iterdir() if path.is_file()}
+    program = build(tmp_path_factory.mktemp("spheres"), files) / "spheres"
 
     def run(side, dt, steps, rows):
         words = " ".join(repr(float(x)) for row in rows for x in row)
@@ -87,6 +87,13 @@ def spheres(tmp_path_factory):
 R, SPEED = 1e-3, 3.0
 MASS, E_STAR = 7850 * 4 / 3 * np.pi * R**3, pair.E_star(208e9, 0.3, 208e9, 0.3)
 PHASES = (np.arange(8) + 0.5) / 8
+
+
+def test_the_core_that_the_page_shows_is_that_of_the_program():
+    """Line by line, but for the depth of the class around it."""
+    (core,) = re.findall(r"^```cpp\n(.*?)^```$", PAGE, re.M | re.S)
+    program = [line.strip() for line in (PROGRAM / "spheres.cpp").read_text().splitlines()]
+    assert all(line.strip() in program for line in core.splitlines())
 
 
 def test_the_program_of_the_page_gives_the_restitution_of_theory(spheres):

@@ -159,7 +159,7 @@ def damped(e, tan_theta, zeta, *, pulls, steps=40000):
     return P_t / (MU * P_n)
 
 
-PRINTED = {  # in docs/liggghts_numbers.md and docs/upstream.md: f/mu at e = 0.9, 0.7, 0.5, 0.2
+PRINTED = {  # in docs/liggghts_loop.md and docs/upstream.md: f/mu at e = 0.9, 0.7, 0.5, 0.2
     "ep/hertz": dict.fromkeys((0.9, 0.7, 0.5, 0.2), 1.0),
     "hertz": {0.9: 1.004, 0.7: 1.047, 0.5: 1.168, 0.2: 1.73},
 }

@@ -3,8 +3,8 @@
 
 The first word of a block is its language, the others say what happens to it. `sh` and `python` run in the order of the
 page; `sh in FILE` is run by that test; `sh by hand` takes minutes, another tree or root. `toml CASE` changes a case,
-`toml config` is the file of settings. `deck` is a deck of LIGGGHTS, or lines of one. `cmake` and `cpp` are
-built in test_stranger.py. `text` is output or a formula.
+`toml config` is the file of settings. `deck` is a deck of LIGGGHTS, or lines of one. `cpp` is a part of a
+program that test_stranger.py builds. `text` is output or a formula.
 """
 
 import importlib.util
@@ -34,7 +34,7 @@ TOOLS = [name for name in ("mkdocs", "latex2mathml") if importlib.util.find_spec
 FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.M | re.S)
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 ALL = [(path.name, info.split(), text) for path in PAGES for info, text in FENCE.findall(path.read_text())]
-OWN = ("upstream.md", "studies.md")  # test_plugin_upstream and test_pages run theirs
+OWN = ("studies.md",)  # test_pages runs them
 FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
 SMALL = {
     "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
@@ -61,7 +61,7 @@ def small(folder):
 def test_every_block_says_what_it_is_and_none_is_only_indented():
     for name, words, text in ALL:
         where = f"{name}: {' '.join(words)}\n{text}"
-        assert words and words[0] in ("sh", "python", "toml", "deck", "jinja", "text", "cmake", "cpp"), where
+        assert words and words[0] in ("sh", "python", "toml", "deck", "jinja", "text", "cpp"), where
         if words[1:2] == ["in"]:
             assert (ROOT / "tests" / words[2]).exists(), where
         elif words[0] == "sh":
