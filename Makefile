@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Each target calls scripts and tools.
-.PHONY: setup demo trixie container lammps yade test faults packaging thorough slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade lock versions fuzz valgrind reliability tutorials wheel deb release trees clean
+.PHONY: setup demo trixie container lammps yade test faults packaging thorough slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade lock versions fuzz valgrind reliability tutorials wheel deb release trees rooms clean
 
 setup:
 	@scripts/setup
@@ -32,6 +32,7 @@ test:
 	@.venv/bin/python scripts/lammps
 	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk mkdocs-material latex2mathml nvidia-cuda-nvrtc-cu12 nvidia-cuda-cccl-cu12
 	.venv/bin/python -m pytest -n 3 --dist worksteal
+	@scripts/rooms
 
 # every planted fault turns its test red; after `make test`
 faults: setup
@@ -136,6 +137,10 @@ release: setup
 # TREES="/path/to/folder /path/to/lmp_auto ...": checkouts of LIGGGHTS, executables that were built after `epdem export liggghts`
 trees: setup
 	@.venv/bin/python scripts/trees $(TREES)
+
+# lines of each room beside its ceiling; `make test` prints them, too
+rooms:
+	@scripts/rooms
 
 clean:
 	rm -rf .venv build dist runs
