@@ -20,10 +20,10 @@ from ..case.plausibility import case_warnings
 from ..case.toml import LoadedCase, error_context, read_toml, text_of
 from ..errors import CaseError
 from ..jobs.engine import require
-from ..jobs.stage import Inputs, Stage, Tables, compute, inputs
+from ..jobs.stage import Inputs, Stage, Tables, inputs, stage
 from . import store
 from .comparison import compare
-from .engine import ImpactEngine, Trajectory, check_plan
+from .engine import ImpactEngine, check_plan
 from .experiment import experiment
 from .measurement import measure, sample_impacts
 from .plan import Plan, plan
@@ -60,13 +60,16 @@ def run_plan(
     version: of the engine, for results that are stored. Raises EngineError, and CaseError for what the engine cannot
     do.
     """
+    now = inputs(tool, p, version=version, facts=_facts(p), ranks=ranks)
 
-    def read(path: Trajectory) -> tuple[Tables, dict[str, float]]:
+    def compute() -> tuple[Tables, dict[str, float]]:
+        folder.mkdir(parents=True, exist_ok=True)
+        tool.put(now.files, folder)
+        path = tool.run(p, folder, ranks=ranks)
         tables = {"impacts": measure(p, path), "paths": sample_impacts(p, path)}
         return tables, {f"seconds_{name}": seconds for name, seconds in path.seconds.items()}
 
-    now = inputs(tool, p, version=version, facts=_facts(p), ranks=ranks)
-    return compute(tool, p, folder, read, now, ranks=ranks, stored=stored)
+    return stage(now, compute, stored)
 
 
 def _facts(p: Plan) -> object:
@@ -177,15 +180,15 @@ def fill(
             key = f"{law}/{tool.name}"
             progress(f"{tool.name}, {law}: {p.n} impacts")
             stored, version = _stage(old, key) if old else None, versions[tool.name]
-            stage = run_plan(p, tool, outcome.folder / key, ranks=outcome.ranks, version=version, stored=stored)
-            results.impacts[key], results.paths[key] = stage.tables["impacts"], stage.tables["paths"]
-            about = {"inputs": stage.inputs.key, "plan": _plan_hash(p), "time_step": p.time_step}
-            results.runs[key] = stage.seconds | about | outcome.how
-            decks = {Path(name).name: text for name, text in stage.inputs.files.items() if not name.endswith(".data")}
+            done = run_plan(p, tool, outcome.folder / key, ranks=outcome.ranks, version=version, stored=stored)
+            results.impacts[key], results.paths[key] = done.tables["impacts"], done.tables["paths"]
+            about = {"inputs": done.inputs.key, "plan": _plan_hash(p), "time_step": p.time_step}
+            results.runs[key] = done.seconds | about | outcome.how
+            decks = {Path(name).name: text for name, text in done.inputs.files.items() if not name.endswith(".data")}
             results.decks |= {f"{key}/{name}": text for name, text in decks.items()}
-            if stage.reused:
+            if done.reused:
                 outcome.reused.append(key)
-            outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
+            outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + done.seconds["seconds"]
             rows.append(compare(tool.name, law, results.impacts[key], prediction, outcome.case.tolerances))
             results.comparison = pd.concat(rows, ignore_index=True)
             keep()

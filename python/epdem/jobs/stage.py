@@ -13,7 +13,7 @@ from typing import TypeVar
 import pandas as pd
 
 from ..base.files import claim
-from .engine import Engine, Feature, Report, check, refusal, silent
+from .engine import Engine, Feature, check, refusal
 
 Tables = dict[str, pd.DataFrame]
 Job = TypeVar("Job")
@@ -87,25 +87,13 @@ def inputs(tool: Engine[Job, Result], job: Job, *, version: str, facts: object =
     return Inputs(files, hashlib.sha256(repr(known).encode()).hexdigest())
 
 
-def compute(
-    tool: Engine[Job, Result],
-    job: Job,
-    folder: Path,
-    read: Callable[[Result], tuple[Tables, dict[str, float]]],
-    now: Inputs,
-    *,
-    ranks: int = 1,
-    report: Report = silent,
-    stored: Stage | None = None,
-) -> Stage:
-    """The `stored` stage if its inputs are those of the job, `now`, else one run in `folder`. Raises EngineError.
+def stage(now: Inputs, compute: Callable[[], tuple[Tables, dict[str, float]]], stored: Stage | None = None) -> Stage:
+    """The `stored` stage if its inputs are those of the job, `now`, else the one that `compute` makes.
 
-    read: tables and times of the engine's result.
+    compute: runs the engine; its tables, and times of its own. Raises what `compute` raises.
     """
     if stored is not None and stored.inputs.key == now.key:
         return replace(stored, inputs=now, reused=True)
     start = time.perf_counter()
-    folder.mkdir(parents=True, exist_ok=True)
-    tool.put(now.files, folder)
-    tables, seconds = read(tool.run(job, folder, ranks=ranks, report=report))
+    tables, seconds = compute()
     return Stage(now, tables, seconds | {"seconds": time.perf_counter() - start})

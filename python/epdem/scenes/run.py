@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene from case file to results.h5: deck, run, tables, energy balance, checks; and its continuation."""
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +15,7 @@ from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Feature, Report, check, refusal, refuse_ranks, silent
-from ..jobs.stage import Inputs, Tables, inputs, without_comments
+from ..jobs.stage import Inputs, Stage, Tables, inputs, stage, without_comments
 from . import checks, measures, results, stages
 from .plan import Resumed, SceneEngine, ScenePlan, plan
 from .timestep import leading_impact
@@ -109,44 +108,47 @@ def run(
     folder = results_folder(out, p.case.name, "" if engine.name == DEFAULT_ENGINE else engine.name)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    begin, total = None, p.steps
+    total, continued = p.steps, list[Resumed]()
     with claim(folder, force=force, files=given.files, case=p.case.name) as kept:
-        start, old = time.perf_counter(), None if fresh or resume else _stored(folder, given.key)
+        old = None if fresh or resume else _stored(folder, given.key)
         same = kept.job.get("inputs") == given.key
         if not (same or resume or force):
             notes += kept.set_aside()
         ended = None if fresh or resume or old or not same else _ended(engine, p, folder)
-        if old:
-            tables = results.engine_tables(p, old.tables)
-        elif resume:
-            _refuse_resume(kept, given, versions)
-            tables, resumed = engine.resume(p, folder, ranks=ranks, report=lambda step: report(step, total))
-            begin, notes = resumed.step, [*notes, *_left_out(folder, resumed)]
-        elif ended:
-            tables = ended
-        else:
+
+        def compute() -> tuple[Tables, dict[str, float]]:
+            if resume:
+                _refuse_resume(kept, given, versions)
+                tables, resumed = engine.resume(p, folder, ranks=ranks, report=lambda step: report(step, total))
+                continued.append(resumed)
+                return tables, {}
             kept.note(versions, inputs=given.key)
             engine.put(given.files, folder)
-            tables = engine.run(p, folder, ranks=ranks, report=lambda step: report(step, total))
-        seconds = 0.0 if old else time.perf_counter() - start
-        p = _as_run(p, tables)
-        tables = _judge(p, tables, folder)
+            return engine.run(p, folder, ranks=ranks, report=lambda step: report(step, total)), {}
+
+        known = results.engine_tables(p, old.tables) if old else ended
+        done = stage(given, compute, Stage(given, known, {"seconds": 0.0}) if known else None)
+        for resumed in continued:
+            notes += _left_out(folder, resumed)
+        ran = _as_run(p, done.tables)
+        tables = _judge(ran, done.tables, folder)
         about = {
             "case": p.case.name,
             "epdem": __version__,
             "engine": engine.name,
             f"version_{engine.name}": version,
             "ranks": ranks,
-            "time_step": p.time_step,
-            "steps": p.steps,
+            "time_step": ran.time_step,
+            "steps": ran.steps,
             "inputs": given.key,
-            "seconds": seconds,
+            "seconds": done.seconds["seconds"],
         }
         decks = {name: text for name, text in given.files.items() if "/" not in name}  # without modules
         found = results.SceneResults(text, old.attributes if old else about, tables, decks, named)
-        results.write(folder / "results.h5", p, found, old)
-    warnings = [*notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *passed_walls(p, tables)]
-    return SceneOutcome(p, folder, found, seconds, bool(old or ended), begin, warnings)
+        results.write(folder / "results.h5", ran, found, old)
+    warnings = [*notes, *measured_warnings(ran, tables), *lost_spheres(ran, tables), *passed_walls(ran, tables)]
+    begin = continued[0].step if continued else None
+    return SceneOutcome(ran, folder, found, done.seconds["seconds"], done.reused, begin, warnings)
 
 
 def _ended(engine: SceneEngine, p: ScenePlan, folder: Path) -> Tables | None:
