@@ -20,10 +20,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
-from pages import markdown, replace_tables
+from pages import markdown, replace_tables, store
 from reliability_faults import FAULTS
 
-from epdem.impacts import store
+from epdem.impacts.store import read as read_results
 from epdem.scenes import results
 
 ROOT = Path(__file__).parents[1]
@@ -84,7 +84,7 @@ def living(out: Path) -> list[int]:
 def tables(kind: str, out: Path) -> dict[str, pd.DataFrame]:
     """The numbers of a finished command, which must not depend on what happened on the way."""
     if kind == "impacts":
-        return store.read(out / "results.h5").impacts
+        return read_results(out / "results.h5").impacts
     if kind == "sweep":
         found = pd.read_csv(out / "sweep.csv")
         return {"sweep": found[[c for c in found if not c.startswith("seconds")]]}
@@ -215,29 +215,41 @@ def tried(fault: Callable[[Path, Path], str], out: Path) -> str:
     return fault(WORK, out)
 
 
-def found_tables() -> dict[str, str]:
-    """The tables of docs/evidence.md: trials that passed, faults."""
+def report() -> None:
+    """Write the tables of docs/data and the table of docs/evidence.md."""
     found = stored()
     kills = [t for t in found if t["what"] != "fault"]
     count = Counter((t["what"], t["how"], not t["wrong"]) for t in kills)
-    rows = []
-    for kind in COMMANDS:
-        row: dict[str, object] = {"killed": kind}
-        for way in WAYS:
-            good, bad = count[kind, way, True], count[kind, way, False]
-            row[way] = f"{good} of {good + bad}"
-        rows.append(row)
+    rows = [
+        {
+            "killed": kind,
+            "how": way,
+            "passed": count[kind, way, True],
+            "trials": count[kind, way, True] + count[kind, way, False],
+        }
+        for kind in COMMANDS
+        for way in WAYS
+    ]
     faults = [
         {"fault": t["how"], "result": t["wrong"] or f"pass: {FAULTS[t['how']].__doc__}"}
         for t in found
         if t["what"] == "fault" and t["how"] in FAULTS
     ]
-    return {"kills": markdown(pd.DataFrame(rows)), "faults": markdown(pd.DataFrame(faults))}
+    trials, planted = pd.DataFrame(rows), pd.DataFrame(faults)
+    store("reliability", trials)
+    store("reliability_faults", planted)
+    passed = trials["passed"].sum(), planted["result"].str.startswith("pass: ").sum()
+    lines = [
+        ("runs that are stopped", passed[0], trials["trials"].sum(), "[reliability.csv](data/reliability.csv)"),
+        ("faults", passed[1], len(planted), "[reliability_faults.csv](data/reliability_faults.csv)"),
+    ]
+    table = pd.DataFrame(lines, columns=["what", "passed", "of", "each of them"])
+    replace_tables("evidence", {"reliability": markdown(table)})
 
 
 if __name__ == "__main__":
     WORK.mkdir(parents=True, exist_ok=True)
     cases()
     trials(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
-    replace_tables("evidence", found_tables())
+    report()
     sys.exit(any(t["wrong"] for t in stored()))

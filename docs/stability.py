@@ -105,13 +105,12 @@ tests/scenes/test_bed_step.py tests/engines/test_yade_packing.py`). Scenes stay 
 
 ## Round-off of positions
 
-An engine with positions computes an overlap as a difference of positions. Each step rounds a position to eps R; the
-velocity does not contain this displacement. The largest error of e_n of ten phases over N steps in contact is
-`{formula}` (delta_e: elastic recovery). Such an engine reports 'not representable' and does not run if alpha_max < 1e4
-eps max(R) (an error of 7e-4 at 200 steps) or alpha_max > min(R)/2 (contact detection and normal fail). The table shows
-the largest deviation of all laws from the same impacts in long double; `double` is the embedded engine, which
-integrates the overlap, `positions` is the same integration of the position
-([stability_roundoff.csv](data/stability_roundoff.csv)).
+An engine with positions computes an overlap as a difference of positions, which each step rounds to eps R. The largest
+error of e_n of ten phases over N steps in contact is `{formula}` (delta_e: elastic recovery). Such an engine reports
+'not representable' and does not run if alpha_max < 1e4 eps max(R) (an error of 7e-4 at 200 steps) or
+alpha_max > min(R)/2 (contact detection and normal fail). The table shows the largest deviation of all laws from the
+same impacts in long double; `double` is the embedded engine, which integrates the overlap, `positions` is the same
+integration of the position ([stability_roundoff.csv](data/stability_roundoff.csv)).
 
 {roundoff}
 
@@ -121,10 +120,10 @@ About 2,000 frictionless spheres with real moduli and periodic lateral boundarie
 `plate`, a loose lattice of steel spheres that a plate compresses at 20 m/s to two thirds of its height; `mixture`, a
 gas of alternating 1 TPa and 1 MPa spheres at 1 m/s; `shock`, two blocks of steel spheres that collide at 300 m/s. The
 step is 2 % of the stability limit at the highest speed. The total is kinetic energy, elastic energy (from theory) and
-plastic work less the work of the plate; no term is a remainder. The table shows maxima over all laws, relative to the
-energy input: the largest `rise` of the total between two of 40 frames and its largest deviation `off` from the start;
-`last_difference` is the largest difference of a final position on 1 and 2 ranks over the radius, which grows from
-round-off because the paths are chaotic ([stability_bulk.csv](data/stability_bulk.csv)).
+plastic work less the work of the plate. The table shows maxima over all laws, relative to the energy input: the largest
+`rise` of the total between two of 40 frames and its largest deviation `off` from the start; `last_difference` is the
+largest difference of a final position on 1 and 2 ranks over the radius, which grows from round-off because the paths
+are chaotic ([stability_bulk.csv](data/stability_bulk.csv)).
 
 {bulk}
 """
