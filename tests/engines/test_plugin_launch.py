@@ -193,6 +193,21 @@ def test_the_deck_of_the_user_page_prints_what_the_page_says(tmp_path):
     printed = re.search(r"The deck prints (\S+),", page).group(1)
     got = re.search(r"^restitution (\S+)", good(tmp_path, text).text, re.M).group(1)
     assert f"{float(got):.4f}" == printed == "0.9476"
+    micro = {  # pg, um, us: lengths and times have 1e6 times their numbers, pressures and densities 1e-3
+        "units si": "units micro",
+        "-0.1 0.1 -0.1 0.1 -0.01 0.2": "-1e5 1e5 -1e5 1e5 -1e4 2e5",
+        "neighbor 0.005": "neighbor 5000",
+        "2.08e11": "2.08e8",
+        "2.8e9": "2.8e6",
+        "0 0 0.01001": "0 0 10010",
+        "diameter 0.02 density 7850": "diameter 20000 density 7.85",
+        "timestep 1e-7": "timestep 0.1",
+    }
+    for si, other in micro.items():
+        assert text.count(si) == 1
+        text = text.replace(si, other)
+    scaled = re.search(r"^restitution (\S+)", good(tmp_path / "micro", text).text, re.M).group(1)
+    assert float(scaled) == pytest.approx(float(got), rel=1e-10)
 
 
 def test_nothing_follows_the_error_of_a_deck(tmp_path):
