@@ -4,7 +4,7 @@ import os
 import pytest
 from planting import faults, with_switches
 from sub_models import add_models
-from workshop import Runner, build_plugin, copy_of_project
+from workshop import Runner, build_plugin, copy_of_project, with_one_instruction_set
 
 from engines.yade_native import module_folder
 
@@ -34,11 +34,8 @@ def plugin(shared):
     """A copy of the project whose plugin has the new sub-models, and all faults of the plugin behind switches."""
 
     def build(folder):
-        copy_of_project(folder)
+        with_one_instruction_set(copy_of_project(folder))
         add_models(folder)
-        for name in ("avx2", "avx512"):  # one instruction set halves the compiler's work
-            text = f"namespace epdem::kernels {{\nconst Kernels kernels_{name} = kernels_sse2;\n}}\n"
-            (folder / f"cpp_contact/kernels/{name}.cpp").write_text(f'#include "kernels/block.hpp"\n{text}')
         build_plugin(folder, with_switches(folder, faults("plugin")))
 
     return shared("plugin", build)

@@ -11,11 +11,20 @@ from pathlib import Path
 
 import pytest
 from planting import Fault, faults, planted, with_switches
-from workshop import PYTHON, ROOT, Runner, build_library, program
+from workshop import (
+    PYTHON,
+    ROOT,
+    Runner,
+    build_lammps,
+    build_library,
+    build_yade,
+    program,
+    with_one_instruction_set,
+)
 
-SWITCHED = ("library", "plugin")  # all faults in one build
+SWITCHED = ("library", "plugin", "lammps", "yade")  # all faults of one in one build
 ROOMS = [path.stem for path in sorted((Path(__file__).parent / "planted").glob("*.toml")) if path.stem not in SWITCHED]
-FAULTS, OF_LIBRARY, OF_PLUGIN = faults(*ROOMS), faults("library"), faults("plugin")
+FAULTS, OF_LIBRARY, OF_PLUGIN, OF_LAMMPS, OF_YADE = faults(*ROOMS), *(faults(name) for name in SWITCHED)
 EVERY = -(-len(FAULTS) // 10)
 HALVES = [sorted({fault.test for fault in FAULTS})[half::2] for half in (0, 1)]
 
@@ -30,7 +39,7 @@ def needs_an_engine(test: str) -> bool:
 
 
 def test_every_planted_fault_has_its_own_name_and_a_text_that_exists():
-    everything = FAULTS + OF_LIBRARY + OF_PLUGIN
+    everything = FAULTS + OF_LIBRARY + OF_PLUGIN + OF_LAMMPS + OF_YADE
     assert len(everything) >= 40 and len({fault.name for fault in everything}) == len(everything)
     for fault in everything:
         planted(fault, (ROOT / fault.file).read_text())
@@ -85,3 +94,17 @@ def test_planted_faults_of_the_library_turn_their_tests_red(spoilt):
 @pytest.mark.faults
 def test_planted_faults_of_the_plugin_turn_their_tests_red(plugin):
     all_turn_red(Runner(plugin, {"EPDEM_LIGGGHTS": str(program(plugin))}), OF_PLUGIN)
+
+
+@pytest.mark.lammps
+@pytest.mark.faults
+def test_planted_faults_of_the_plugin_for_lammps_turn_their_tests_red(spoilt):
+    build_lammps(with_one_instruction_set(spoilt), with_switches(spoilt, OF_LAMMPS))
+    all_turn_red(Runner(spoilt), OF_LAMMPS)
+
+
+@pytest.mark.yade("module")
+@pytest.mark.faults
+def test_planted_faults_of_the_module_for_yade_turn_their_tests_red(spoilt):
+    module = build_yade(spoilt, with_switches(spoilt, OF_YADE))
+    all_turn_red(Runner(spoilt, {"EPDEM_YADE_MODULE": str(module)}), OF_YADE)

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +23,14 @@ def copy_of_project(folder: Path) -> Path:
     return folder
 
 
+def with_one_instruction_set(folder: Path) -> Path:
+    """A copy in which two of three files of the kernels are empty: that halves the compiler's work."""
+    for name in ("avx2", "avx512"):
+        text = f"namespace epdem::kernels {{\nconst Kernels kernels_{name} = kernels_sse2;\n}}\n"
+        (folder / f"cpp_contact/kernels/{name}.cpp").write_text(f'#include "kernels/block.hpp"\n{text}')
+    return folder
+
+
 def build_library(folder: Path, flags: str = "-O0") -> None:
     """Compile the C library of a copy with the compiler's `flags`."""
     native = folder / PYTHON / "native"
@@ -34,20 +43,42 @@ def build_plugin(folder: Path, flags: str) -> None:
     _build(folder, "epdem-liggghts", flags)
 
 
+def build_lammps(folder: Path, flags: str) -> None:
+    """Compile the plugin of a copy for the LAMMPS in use with the compiler's `flags`."""
+    settings = [sys.executable, ROOT / "scripts/lammps", "--settings"]
+    words = subprocess.run(settings, check=True, capture_output=True, text=True).stdout.split("\n")
+    more = [word.replace("cmake.define.", "-D") for word in words if word]
+    native = folder / PYTHON / "native/lammps"
+    native.mkdir(parents=True, exist_ok=True)
+    shutil.copy(_build(folder, "epdem_lammps", flags, more), native)
+
+
+def build_yade(folder: Path, flags: str) -> Path:
+    """Compile YADE's module of a copy with the compiler's `flags`; its folder."""
+    more = ["-DCMAKE_BUILD_TYPE=None", f"-DYADE_SOURCE={Path(os.environ['YADE_SOURCE']).resolve()}"]
+    return _build(folder, "epdem_yade", flags, more, source="cpp_contact/yade").parent
+
+
 def program(folder: Path) -> Path:
     """The LIGGGHTS of a copy."""
     return next((folder / "build").rglob("epdem-liggghts/**/epdem-liggghts"))
 
 
-PRODUCTS = {"epdem_capi": "libepdem.so", "epdem-liggghts": "epdem-liggghts"}
+PRODUCTS = {
+    "epdem_capi": "libepdem.so",
+    "epdem-liggghts": "epdem-liggghts",
+    "epdem_lammps": "epdemplugin.so",
+    "epdem_yade": "epdem_yade.so",
+}
 
 
-def _build(folder: Path, target: str, flags: str) -> Path:
+def _build(folder: Path, target: str, flags: str, more: Sequence[str] = (), *, source: str = ".") -> Path:
     """What a target of the project's own build file makes, again only where a source has changed."""
     tree = folder / "build" / target
     if not tree.exists():
         plugin = "ON" if target == "epdem-liggghts" else "OFF"
-        configure = ["cmake", "-S", folder, "-B", tree, f"-DCMAKE_CXX_FLAGS={flags}", f"-DEPDEM_PLUGIN={plugin}"]
+        settings = [f"-DCMAKE_CXX_FLAGS={flags}", f"-DEPDEM_PLUGIN={plugin}", *more]
+        configure = ["cmake", "-S", folder / source, "-B", tree, *settings]
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", tree, "-j2", "--target", target], check=True, stdout=subprocess.DEVNULL)
     return next(tree.rglob(PRODUCTS[target]))
