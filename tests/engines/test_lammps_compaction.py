@@ -9,6 +9,7 @@ from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, MOVES, RADII, as
 from test_plugin_compaction import cluster as cluster_of_liggghts
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
+from marks import thorough
 
 pytestmark = needs_lammps
 
@@ -69,7 +70,7 @@ def test_forces_are_those_of_liggghts(tmp_path):
     assert np.abs(found - other).max() <= 1e-12 * np.abs(other).max()
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, thorough(2)])
 def test_contacts_alone_keep_every_bit(ranks, tmp_path):
     """Pairs and spheres at a wall, elastic to fully plastic, with a second impact on the wall after the first."""
     spheres = data(*alone(12), 2000.0, half=64.0)

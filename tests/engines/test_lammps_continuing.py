@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
 
+from marks import thorough
+
 pytestmark = needs_lammps
 
 HALF = "region half block 0.01 0.02 0.004 0.012 INF INF units box\ngroup half region half\n"
@@ -23,8 +25,10 @@ def in_order(rows):
     return rows[np.lexsort(rows[:, 1:4].T)]
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("what", NUMBERS)
+@pytest.mark.parametrize(
+    ("what", "ranks"),
+    [thorough(what, n, unless=n == 1 or what == "reset_atoms twice") for what in NUMBERS for n in (1, 2)],
+)
 def test_atoms_with_new_numbers_keep_their_dents(what, ranks, tmp_path):
     """The same bed, whose atoms keep their numbers, ends with the same motion."""
     deck = bed().replace("atom_modify map array", "atom_modify map array sort 0 0") + "run 400\n" + HALF
@@ -64,8 +68,9 @@ def moving_wall(what):
     return head, wall + "thermo_modify format float %.17g\nthermo 1\n"
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("what", MOVING)
+@pytest.mark.parametrize(
+    ("what", "ranks"), [thorough(what, n, unless=n == 1 or what == "moved") for what in MOVING for n in (1, 2)]
+)
 def test_a_wall_that_moves_goes_on_after_a_restart_to_the_bit(what, ranks, tmp_path):
     """With restitution: force, power and motion are those of a second run."""
     head, wall = moving_wall(what)

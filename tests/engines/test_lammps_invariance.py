@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
 
+from marks import thorough
+
 pytestmark = needs_lammps
 
 LAWS = {  # of the two materials
@@ -109,7 +111,7 @@ BITS = {
 }
 
 
-@pytest.mark.parametrize("what", BITS)
+@pytest.mark.parametrize("what", [thorough(what, unless=what != "two ranks") for what in BITS])
 def test_lists_order_ranks_and_newton_change_no_bit(what, law, plain, tmp_path):
     assert np.array_equal(end_of(law, tmp_path, **BITS[what]), plain)
 

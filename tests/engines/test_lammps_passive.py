@@ -48,16 +48,18 @@ def test_elastic_cycles_lose_nothing_and_plastic_ones_some(name, elastic, tmp_pa
     assert abs(lost[0.5]) < 1e-12 and abs(lost[0.999]) < 1e-12 < 0.01 < lost[1.2]
 
 
-@pytest.mark.parametrize("materials", BEDS.values(), ids=BEDS)
-@pytest.mark.parametrize("cluster", CLUSTERS.values(), ids=CLUSTERS)
-def test_walks_create_no_energy(cluster, materials, tmp_path):
+@pytest.mark.parametrize(
+    ("cluster", "bed"),
+    [thorough(c, bed, unless=c == "two of two sizes" or bed == "E/Y 30") for c in CLUSTERS for bed in BEDS],
+)
+def test_walks_create_no_energy(cluster, bed, tmp_path):
     """Falls of the dissipation of the steps ten later over the work; a contact that ends may lose and regain at once.
 
     The error of the plastic work of the ledger is of second order.
     """
     found = []
     for steps in (500, 1000):
-        work, elastic, plastic = walks(tmp_path, cluster, materials, steps)
+        work, elastic, plastic = walks(tmp_path, CLUSTERS[cluster], BEDS[bed], steps)
         ledger = np.abs(work - elastic - plastic).max(axis=0) / work.max(axis=0)
         found.append((falls(work, elastic, 10).max(), ledger.max()))
     assert found[0][0] < 1e-4 and found[1][0] < 2e-5

@@ -7,6 +7,8 @@ from plugin_compaction import alone, data, deck, forces, overlapping, run
 from plugin_decks import run as any_run
 from plugin_loop import SAID, Scene, outcome
 
+from marks import thorough
+
 pytestmark = pytest.mark.liggghts
 
 HEAVY = 1e15  # density [kg/m^3] of spheres that no contact slows down
@@ -119,8 +121,7 @@ def test_the_pair_loop_gives_the_bits_of_liggghts_loop(tmp_path, scene):
     assert not np.array_equal(without[-1][:, :4], ours[-1][:, :4])
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("loop", ["", "generic"])
+@pytest.mark.parametrize(("loop", "ranks"), [("", 1), thorough("", 2), thorough("generic", 1), ("generic", 2)])
 def test_contacts_alone_keep_every_bit(tmp_path, ranks, loop):
     """Pairs and spheres at a wall, elastic to fully plastic, with a second impact after the first."""
     order = np.random.default_rng(6).permutation(72)

@@ -6,6 +6,7 @@ import pytest
 from plugin_decks import NU, P_Y, RHO, E, Y, contact, good, head, materials, plate
 
 from epdem.theory import backbones, pair, restitution
+from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 
@@ -77,7 +78,7 @@ def first_bounces(frames):
 ALL_PAIRS = [(how, law, (k + n) % 2 + 1) for n, how in enumerate(WHERE) for k, law in enumerate(("thornton", "cavity"))]
 
 
-@pytest.mark.parametrize(("how", "law", "ranks"), ALL_PAIRS)
+@pytest.mark.parametrize(("how", "law", "ranks"), [thorough(*c, unless=c[1] == "cavity") for c in ALL_PAIRS])
 def test_inserted_spheres_yield_as_theory_says_and_their_energy_adds_up(tmp_path, law, how, ranks):
     files = {"plate.stl": plate(x=(-0.02, 0.02), y=(-0.02, 0.02))}
     run = good(tmp_path, deck(law, how, ranks), ranks=ranks, files=files)

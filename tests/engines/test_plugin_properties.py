@@ -8,6 +8,8 @@ import pytest
 from plugin_decks import DUMP, YIELDING, Bodies, good, materials, per_pair
 from test_plugin_launch import BOX, bodies, deck, refusal, started
 
+from marks import thorough
+
 pytestmark = pytest.mark.liggghts
 
 RATIO = "fix q all property/global yieldPressureRatio scalar {}\n"
@@ -130,7 +132,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("name", CHANGES)
-@pytest.mark.parametrize("law", YIELDING)
+@pytest.mark.parametrize("law", [thorough(law, unless=law == "thornton") for law in YIELDING])
 def test_a_property_that_changes_between_runs_counts_from_there_on_and_only_it(tmp_path, law, name):
     """Must 5: nothing computed from properties survives an init. Bitwise: an impact after the change is that of a deck
     which says so from the start, for pairs and wall; the first run, before any contact, connects the old value."""

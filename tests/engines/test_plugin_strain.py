@@ -11,6 +11,7 @@ from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, hea
 from plugin_loop import ADHESIVE, SPACING, Scene, bodies, covering, deck, outcome
 
 from epdem.theory import backbones, pair, restitution
+from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 
@@ -76,7 +77,10 @@ def test_the_largest_strain_of_a_bed_is_that_of_its_geometry(tmp_path):
     np.testing.assert_allclose(found[:, 1], 0.5 * np.sqrt(overlap), rtol=1e-9)
 
 
-@pytest.mark.parametrize("scene", [*covering()[::3], *(Scene(law=law, loose=True) for law in ADHESIVE)], ids=str)
+SCENES = [*covering()[::3], *(Scene(law=law, loose=True) for law in ADHESIVE)]
+
+
+@pytest.mark.parametrize("scene", [thorough(s, unless=n % 3 == 0, id=str(s)) for n, s in enumerate(SCENES)])
 def test_every_loop_finds_the_same_and_no_force_changes(tmp_path, scene):
     asked = replace(scene, settings=(*scene.settings, ON))
     generic, text = outcome(tmp_path / "generic", asked, loop="generic", before=ROWS)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from epdem.theory import pair, printed, restitution, yielding
 from epdem.theory.backbones import LAWS, Cavity, Hertz, Meyer, Thornton
 from epdem.theory.johnson import Johnson
+from marks import thorough
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169
@@ -140,7 +141,7 @@ def test_restitution_is_the_quadrature_of_the_law(name, x, log_E, log_R, log_rat
 
 
 @pytest.mark.parametrize("name", ["hertz", "thornton", "johnson", "cavity", "meyer"])
-@pytest.mark.parametrize("speed", [0.01, 0.3, 3.0, 30.0])
+@pytest.mark.parametrize("speed", [0.01, thorough(0.3), thorough(3.0), 30.0])
 def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
     """t = integral of d alpha/v on both ways, with alpha = alpha_max - u^2, which is regular at the turning point."""
     found = restitution.impact(steel(name), m_star=M, speed=speed)
@@ -178,7 +179,7 @@ def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
 @pytest.mark.parametrize(
     ("name", "kink"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1), ("meyer", 0)]
 )
-@pytest.mark.parametrize("beyond", [1e-6, 3e-4])
+@pytest.mark.parametrize("beyond", [thorough(1e-6), 3e-4])
 def test_loading_time_keeps_its_digits_where_the_law_has_just_changed_its_formula(name, kink, beyond):
     """The kink of the force lies next to the turning point. 1e-10: what is asked of contact times."""
     strength = {"thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9, "meyer": 2.8e9}[name]
