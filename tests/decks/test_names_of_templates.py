@@ -173,7 +173,7 @@ SCENES = {
     "liggghts/scene.in.j2": {("StopCondition", "rows"), ("InsertFix", "rate"), ("PhaseSteps", "upto")},
     "liggghts/scene_setup.in.j2": {("Property", "comment"), ("SurfaceMesh", "keywords"), ("WallLoad", "variables")},
     "lammps/scene.in.j2": {("StopCondition", "rows"), ("PhaseSteps", "end_frames"), ("DeckWall", "regions")},
-    "yade/scene.py.j2": {("DeckFill", "batch"), ("VibrateMove", "omega"), ("PairValue", "matches")},
+    "yade/scene.py.j2": {("DeckFill", "batch"), ("DeckMotion", "begin"), ("PairValue", "matches")},
 }
 
 

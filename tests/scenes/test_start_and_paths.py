@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case
 
+from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
 from epdem.case.scene import parse
-from epdem.case.walls import LinearMove, RotateMove, VibrateMove
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.limits import overlaps
-from epdem.scenes.meshes import SAMPLES, at_end, path
+from epdem.scenes.meshes import at_end
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 
@@ -140,10 +140,13 @@ def test_the_path_of_a_wall_is_that_of_its_points_at_many_times(move, seconds):
             angle = move.rate * t
             matrix = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
             way.append((points - np.array(move.origin)) @ matrix.T + np.array(move.origin))
-    found = path(move, points, seconds, SAMPLES)
-    assert found.min(axis=0) == pytest.approx(np.min(way, axis=0), abs=1e-3)
-    assert found.max(axis=0) == pytest.approx(np.max(way, axis=0), abs=1e-3)
-    assert found[-1] == pytest.approx(way[-1], abs=1e-9) and np.array_equal(path(move, points, seconds)[0], found[-1])
+    for one, of_one in zip(points, np.swapaxes(way, 0, 1), strict=True):
+        low, high = move.extent(seconds, one[None])
+        assert low == pytest.approx(of_one.min(axis=0), abs=1e-3)
+        assert high == pytest.approx(of_one.max(axis=0), abs=1e-3)
+    assert move.point_at(seconds, points) == pytest.approx(way[-1], abs=1e-9)
+    speed = np.linalg.norm(np.diff(way, axis=0), axis=2).max() / (seconds / 2000)
+    assert speed <= move.top_speed(math.sqrt(12)) * (1 + 1e-6)  # no point is farther from an axis
 
 
 VIBRATE = {"kind": "vibrate", "frequency": "100 Hz"}

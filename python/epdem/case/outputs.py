@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from .fields import Frozen, Length, Line, Name, Pressure, Quantity, Speed
-from .walls import Axis, PartName, Place, Side
+from .places import Axis, PartName, Place, Side
 
 UNITS = {"force": "N", "torque": "N m", "position": "m"}
 

@@ -11,30 +11,11 @@ from pydantic import Field, Tag, model_validator
 
 from ..base.tables import Column
 from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, by_key, zero_vector
+from .motions import Rate, Speeds
 from .outputs import Check, Row, Stages
+from .places import Axis, Pair, PartName, Place, Side, Vector
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_table, number_in, refuse_shares
-from .walls import (
-    Axis,
-    CasePhase,
-    ConeWall,
-    CylinderWall,
-    LinearMove,
-    MeshWall,
-    Pair,
-    PartName,
-    Place,
-    PlaneWall,
-    PressMove,
-    Rate,
-    Room,
-    RotateMove,
-    Side,
-    Speeds,
-    Upright,
-    Vector,
-    VibrateMove,
-    Wall,
-)
+from .walls import CasePhase, ConeWall, CylinderWall, MeshWall, PlaneWall, Room, Upright, Wall
 
 Region = Annotated[
     Annotated[Upright, Tag("upright")] | Annotated[Room, Tag("room")], by_key("room", diameter="upright")
@@ -401,16 +382,7 @@ class Parts(Frozen):
         speeds += [abs(w.angular_velocity) * max(w.diameters_of_ends()) / 2 for w in turns]
         limits = self.room.limits
         across = math.dist(limits[0::2], limits[1::2])
-        for move in (m for p in self.phase for m in p.move):
-            match move:
-                case LinearMove():
-                    speeds.append(math.hypot(*move.velocity))
-                case RotateMove():
-                    speeds.append(abs(move.rate) * across)
-                case VibrateMove():
-                    speeds.append(2 * math.pi * move.frequency * math.hypot(*move.amplitude))
-                case PressMove():
-                    speeds.append(move.highest_speed)
+        speeds += [move.top_speed(across) for p in self.phase for move in p.move]
         return max([*speeds, 0.0])
 
     @property

@@ -25,9 +25,10 @@ from .law import LawChoice, LawMaterial, check_law
 from .messages import explain
 from .outputs import MeasuredDensities
 from .parts import Parts
+from .places import PartName
 from .sizes import Share, context
 from .toml import KIND, read_toml, with_library
-from .walls import PartName, Time
+from .walls import Time
 
 
 class Rolling(Frozen):

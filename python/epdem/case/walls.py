@@ -6,54 +6,12 @@ import math
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
+from pydantic import Field, model_validator
 
-from .fields import Frozen, Interval, Length, Name, Quantity, Speed, Spin, zero_vector
-from .messages import PART_NAME
+from .fields import Frozen, Interval, Length, Name, Quantity, Spin, zero_vector
+from .motions import Force, Move
+from .places import Axis, Direction, Limits, Pair, PartName, Place, Side, Span, Vector
 from .sizes import FileName
-
-Place = Annotated[float, Quantity("m")]
-Vector = Annotated[list[Place], Field(min_length=3, max_length=3)]
-Axis = Literal["x", "y", "z"]
-PartName = Annotated[str, Field(pattern=PART_NAME)]
-
-
-def _ordered(span: list[float]) -> list[float]:
-    """Raise ValueError unless a span begins below its end."""
-    if not span[0] < span[1]:
-        raise ValueError(f"{span[0]:g} m must be below {span[1]:g} m")
-    return span
-
-
-Pair = Annotated[list[Place], Field(min_length=2, max_length=2)]
-Span = Annotated[Pair, AfterValidator(_ordered)]  # from, to
-SIDES = {"-x": [-1.0, 0.0, 0.0], "-y": [0.0, -1.0, 0.0], "-z": [0.0, 0.0, -1.0]}
-SIDES |= {f"+{side[1]}": [abs(x) for x in vector] for side, vector in SIDES.items()}
-
-
-def _vector(value: object) -> object:
-    return SIDES.get(value, value) if isinstance(value, str) else value
-
-
-def _side(value: object) -> object:
-    return next((side for side, vector in SIDES.items() if value == vector), value)
-
-
-Side = Annotated[Literal["-x", "+x", "-y", "+y", "-z", "+z"], BeforeValidator(_side)]  # or a vector of length 1
-
-
-def _unit(direction: list[float]) -> list[float]:
-    """The direction with the length 1."""
-    length = math.hypot(*direction)
-    if not length:
-        raise ValueError("has no direction; give another one")
-    return [x / length for x in direction]
-
-
-Direction = Annotated[  # or a Side
-    list[float], BeforeValidator(_vector), Field(min_length=3, max_length=3), AfterValidator(_unit)
-]
-Limits = tuple[float, float, float, float, float, float]  # xlo xhi ylo yhi zlo zhi [m]
 
 
 class Room(Frozen):
@@ -227,74 +185,6 @@ Wall = Annotated[AnyWall, Field(discriminator="kind")]
 
 
 Time = Annotated[float, Quantity("s", above=0.0)]
-Rate = Annotated[float, Quantity("Hz", above=0.0)]
-Force = Annotated[float, Quantity("N", above=0.0)]
-Speeds = Annotated[list[Annotated[float, Quantity("m/s")]], Field(min_length=3, max_length=3)]
-
-Vector3 = tuple[float, float, float]
-
-
-class _Move(Frozen):
-    wall: PartName
-
-
-class LinearMove(_Move):
-    """A constant velocity."""
-
-    kind: Literal["linear"]
-    velocity: Speeds
-
-
-class RotateMove(_Move):
-    """A turn about an axis through `origin`."""
-
-    kind: Literal["rotate"]
-    axis: Direction
-    origin: Vector = Field(default_factory=zero_vector)
-    rate: Spin
-
-    @model_validator(mode="after")
-    def _turns(self) -> Self:
-        if not self.rate:
-            raise ValueError("rate is zero, so nothing turns; give another one, or remove the motion")
-        return self
-
-
-class VibrateMove(_Move):
-    """A harmonic motion that begins in the middle: amplitude times sin(2 pi frequency t)."""
-
-    kind: Literal["vibrate"]
-    amplitude: Vector
-    frequency: Rate
-
-    @property
-    def omega(self) -> float:
-        """Angular frequency [rad/s]."""
-        return 2 * math.pi * self.frequency
-
-
-class PressMove(_Move):
-    """A motion along `direction` that holds the force of the wall on the spheres at `force`."""
-
-    kind: Literal["press"]
-    direction: Direction
-    force: Force
-    highest_speed: Speed
-    _stable: float = PrivateAttr(math.inf)
-
-    @property
-    def speed_in_contact(self) -> float:
-        """Highest speed [m/s] while spheres touch the wall: up to which dashpots leave the motion stable."""
-        return min(self.highest_speed, self._stable)
-
-    def limited(self, stable: float) -> Self:
-        """The same motion with a stable speed [m/s]."""
-        found = self.model_copy()
-        found._stable = stable
-        return found
-
-
-Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discriminator="kind")]
 
 
 class Until(Frozen):
@@ -347,7 +237,7 @@ class CasePhase(Frozen):
                 raise ValueError(f"two motions of wall {wall!r}; give one")
         if self.until and (self.until.after or 0.0) >= self.duration:
             raise ValueError("until.after must be below duration")
-        linear = [m.wall for m in self.move if isinstance(m, LinearMove) and any(m.velocity)]
+        linear = [m.wall for m in self.move if any(m.constant_velocity or ())]
         if self.until and self.until.travel is not None and self.until.wall not in linear:
             raise ValueError(f"until.travel: wall {self.until.wall!r} has no linear motion in this phase")
         return self
@@ -371,9 +261,7 @@ class CasePhase(Frozen):
         """[s]; inf: no travel ends the phase."""
         if self.until is None or self.until.travel is None:
             return math.inf
-        move = self.moves[self.until.wall or ""]
-        assert isinstance(move, LinearMove)
-        return self.until.travel / math.hypot(*move.velocity)
+        return self.until.travel / math.hypot(*(self.moves[self.until.wall or ""].constant_velocity or ()))
 
     @property
     def condition(self) -> Until | None:

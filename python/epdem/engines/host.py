@@ -3,15 +3,16 @@
 
 import logging
 from abc import abstractmethod
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from types import ModuleType
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from ..base import rendering as decks
 from ..base.files import stored_results
 from ..base.processes import crowded
 from ..case import impact, scene
+from ..case.motions import Move
 from ..case.toml import error_context, read_toml
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
@@ -21,12 +22,14 @@ from ..jobs.stage import Tables, parts_hash
 from ..scenes.columns import named_rows, with_first_works
 from ..scenes.limits import refuse_bodies_in_moved_walls
 from ..scenes.model import Model
-from ..scenes.plan import Resumed, ScenePlan
+from ..scenes.plan import Phase, Resumed, ScenePlan
 from ..scenes.plan import plan as plan_scene
 from . import log
 from .frames import Frames
 from .input_script import impact_data
 from .restarts import choose, pruning
+
+T = TypeVar("T")
 
 
 class Host(Engine[Any, Any]):
@@ -147,6 +150,15 @@ def refuse(place: str, value: object, reason: str) -> None:
     if value:
         shown = "" if value is True else f" = {value!r}"
         raise Unsupported(f"{place}{shown}: {reason}", "remove it")
+
+
+def words_of_motion(words: Mapping[type[Move], T], program: str, phase: Phase, wall: str) -> T:
+    """A program's words for the motion of a wall in a phase. Raises Unsupported if it has none."""
+    move = phase.moves[wall]
+    if type(move) not in words:
+        place = f"scene.phase.{phase.name}.move, wall {wall}"
+        raise Unsupported(f"{place}: {program} has no words for the motion {move.kind!r}", "take another engine")
+    return words[type(move)]
 
 
 def refuse_narrow(p: ScenePlan, least: float, reason: str) -> None:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.rendering import number
-from ..case.walls import PlateWall, PressMove
+from ..case.motions import PressMove
+from ..case.walls import PlateWall
 from ..errors import CaseError
 from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION

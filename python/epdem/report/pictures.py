@@ -10,12 +10,13 @@ import pandas as pd
 
 from ..base.files import atomic
 from ..base.readable import in_words
+from ..case.motions import FloatArray
 from ..case.walls import Room
 from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.checks import kinetic
 from ..scenes.columns import last_frame, units
-from ..scenes.meshes import FloatArray, at_end, box, sheet, tube
+from ..scenes.meshes import at_end, box, sheet, tube
 from ..scenes.plan import Phase, ScenePlan
 from .chart import Axis
 

@@ -9,7 +9,6 @@ import numpy as np
 from ..base.readable import in_words
 from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Histogram
-from ..case.walls import LinearMove
 from ..jobs.stage import Tables
 from ..scenes import checks
 from ..scenes.columns import LOADS, place, units
@@ -182,9 +181,9 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     middle, found = p.time_at(step - 0.5 * p.every), []
     named = {row.wall: row for row in p.scene.row if row.force and not row.area}
     for name in dict.fromkeys([*p.loads, *named]):
-        moves = [phase.moves.get(name) for phase in p.phases]
-        moving = [np.array(move.velocity) for move in moves if isinstance(move, LinearMove) and any(move.velocity)]
-        if not moving or any(move and not isinstance(move, LinearMove) for move in moves):
+        velocities = [phase.moves[name].constant_velocity for phase in p.phases if name in phase.moves]
+        moving = [np.array(v) for v in velocities if v and any(v)]
+        if not moving or None in velocities:
             continue
         along = moving[0] / np.linalg.norm(moving[0])
         if name in p.loads:

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..case.parts import Fill, Parts, Region
+from ..case.places import Vector3
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
-from ..case.walls import Vector3
 from ..errors import CaseError
 
 MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..case.motions import FloatArray
 from ..case.parts import FileFill, Parts, Sphere
 from ..case.scene import SceneCase
-from ..case.walls import ConeWall, CylinderWall, LinearMove, MeshWall, PlateWall, PressMove, RotateMove
+from ..case.walls import ConeWall, CylinderWall, MeshWall, PlateWall
 from ..errors import CaseError, EngineError
 from . import meshes
 from .filling import Insertion, mean_volume
-from .meshes import FloatArray
 from .timestep import highest_speed
 
 if TYPE_CHECKING:
@@ -103,8 +103,8 @@ def refuse_combinations(case: SceneCase, s: Parts) -> None:
                 f"scene.phase.{phase.name}.until.wall: {phase.until.wall} is a wall of some phases; name another one"
             )
     moves = [(name, move) for phase in s.phase for name, move in phase.moves.items()]
-    pressed = {name for name, move in moves if isinstance(move, PressMove)}
-    if both := {name for name, move in moves if name in pressed and not isinstance(move, PressMove)}:
+    pressed = {name for name, move in moves if move.press}
+    if both := {name for name, move in moves if name in pressed and not move.press}:
         raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
     turning = {w.name for w in s.wall if isinstance(w, CylinderWall | ConeWall) and w.angular_velocity}
     if both := pressed & turning:
@@ -314,7 +314,7 @@ def largest_density(scene: Parts, beds: Iterable[PressedBed]) -> float:
     """Largest relative density that plates press a bed to: DENSEST where the run alone knows it, 0 without a press."""
     moves = (move for phase in scene.phase for move in phase.moves.values())
     found = [min(bed.solid_height / bed.height, 1.0) if bed.height > 0.0 else DENSEST for bed in beds]
-    presses = any(isinstance(move, LinearMove | PressMove) for move in moves)
+    presses = any(any(move.along) and math.isinf(move.period) for move in moves)
     return max(found, default=DENSEST if presses else 0.0)
 
 
@@ -330,16 +330,15 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
         begin = place = wall.center[axis]
         for n, phase in enumerate(scene.phase):
             move = phase.moves.get(wall.name)
-            if isinstance(move, RotateMove):
-                break
-            speed = move.velocity[axis] if isinstance(move, LinearMove) else 0.0
-            if move is not None:
-                known = isinstance(move, LinearMove) and not phase.condition
-                place += phase.seconds * speed if known else math.nan
-            way = move.direction[axis] if isinstance(move, PressMove) else speed
-            if not way:
+            if move is None:
                 continue
-            sign = math.copysign(1.0, way)
+            if move.rotation:
+                break
+            known = move.constant_velocity and not phase.condition
+            place += phase.seconds * move.along[axis] if known else math.nan
+            if not move.along[axis] or math.isfinite(move.period):
+                continue
+            sign = math.copysign(1.0, move.along[axis])
             stages, against = scene.stages, ""
             if stages and wall.name == stages.against:
                 break  # the punch has the bed

@@ -6,12 +6,12 @@ import math
 import numpy as np
 import pandas as pd
 
+from ..case.motions import FloatArray
 from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from .columns import bodies, columns_of_frames, columns_of_rows, last_frame, reduced
-from .meshes import FloatArray
 from .model import pair_law
 from .plan import ScenePlan
 

@@ -12,27 +12,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from ..case.motions import FloatArray, Move, RotateMove
 from ..case.parts import Parts
-from ..case.walls import (
-    BoxWall,
-    ConeWall,
-    CylinderWall,
-    Limits,
-    LinearMove,
-    MeshWall,
-    Move,
-    PlaneWall,
-    PlateWall,
-    PressMove,
-    RevolvedWall,
-    RotateMove,
-    StlWall,
-    VibrateMove,
-)
+from ..case.places import Limits
+from ..case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
 from ..errors import CaseError
 
-FloatArray = npt.NDArray[np.float64]
-SAMPLES = 129  # of a turn of a wall: its extreme places within 3e-4 of the radius
 FACETS = 48  # around a circle: the wall is at most 0.2 % of the radius off it
 
 
@@ -246,54 +231,33 @@ def surface_rotation(w: MeshWall) -> RotateMove | None:
     )
 
 
-def path(
-    move: LinearMove | RotateMove | VibrateMove, points: FloatArray, seconds: float, samples: int = 0
-) -> FloatArray:
-    """Where `points`, shape (n, 3) [m], are on their way, shape (samples + 1, n, 3): at even times of the first turn of
-    a motion, and at its end."""
-    rate = move.rate if isinstance(move, RotateMove) else move.omega if isinstance(move, VibrateMove) else 0.0
-    once = min(seconds, 2 * math.pi / abs(rate)) if rate else seconds
-    time: FloatArray = np.append(np.linspace(0.0, once, samples), seconds).reshape(-1, 1, 1)
-    if isinstance(move, LinearMove):
-        return np.asarray(points + time * np.array(move.velocity))
-    if isinstance(move, VibrateMove):
-        return np.asarray(points + np.sin(rate * time) * np.array(move.amplitude))
-    axis, arm = np.array(move.axis), points - np.array(move.origin)
-    across = arm - (arm @ axis)[:, None] * axis
-    return np.asarray(points - across + across * np.cos(rate * time) + np.cross(axis, arm) * np.sin(rate * time))
+def under_way(
+    phases: Iterable[tuple[Mapping[str, Move], float]], points: Mapping[str, FloatArray]
+) -> Iterator[tuple[int, str, Move, float, FloatArray]]:
+    """(number of the phase, wall, motion, how long it has lasted [s] at the end of the phase, where it began [m]) of
+    every wall that moves in `phases`, each with its motions and duration [s].
 
-
-def paths(
-    phases: Iterable[tuple[Mapping[str, Move], float]], points: Mapping[str, FloatArray], samples: int = 0
-) -> Iterator[tuple[int, str, FloatArray]]:
-    """(number of the phase, wall, path) of every wall that moves in `phases`, each with its motions and duration [s].
-
-    A wall that a force drives is left out from then on. points: of each wall at the start, shape (n, 3) [m].
+    A motion that goes on from phase to phase begins once. points: of each wall at the start, shape (n, 3) [m].
     """
     here = dict(points)
-    moving: dict[str, tuple[Move, FloatArray, float]] = {}  # motion, where and how long ago it began
+    begun: dict[str, tuple[Move, FloatArray, float]] = {}
     for number, (moves, duration) in enumerate(phases):
-        moving = {name: begun for name, begun in moving.items() if moves.get(name) == begun[0]}
-        for name, move in moves.items():
-            if isinstance(move, PressMove) or name not in here:
-                here.pop(name, None)
-                continue
-            _, begin, seconds = moving.get(name, (move, here[name], 0.0))
-            moving[name] = (move, begin, seconds + duration)
-            way = path(move, begin, seconds + duration, samples)
-            here[name] = way[-1]
-            yield number, name, way
+        begun = {name: x for name, x in begun.items() if moves.get(name) == x[0]}
+        for name in (name for name in moves if name in here):
+            move, begin, before = begun.get(name, (moves[name], here[name], 0.0))
+            seconds = before + duration
+            begun[name], here[name] = (move, begin, seconds), move.point_at(seconds, begin)
+            yield number, name, move, seconds, begin
 
 
 def at_end(
     phases: Sequence[tuple[Mapping[str, Move], float]], triangles: dict[str, FloatArray]
 ) -> dict[str, FloatArray]:
     """The triangles of each wall, shape (n, 3 corners, 3), after `phases`; without walls that a force drives."""
-    pressed = {name for moves, _ in phases for name, move in moves.items() if isinstance(move, PressMove)}
-    found = {name: corners for name, corners in triangles.items() if name not in pressed}
-    for _, name, way in paths(phases, {name: corners.reshape(-1, 3) for name, corners in found.items()}):
-        found[name] = way[-1].reshape(-1, 3, 3)
-    return found
+    found = {name: corners.reshape(-1, 3) for name, corners in triangles.items()}
+    for _, name, move, seconds, begin in under_way(phases, found.copy()):
+        found[name] = move.point_at(seconds, begin)
+    return {name: points.reshape(-1, 3, 3) for name, points in found.items() if not np.isnan(points).any()}
 
 
 def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
@@ -304,9 +268,8 @@ def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
     room = scene.room.limits
     phases = [*takewhile(lambda phase: not phase.condition, scene.phase)]
     centers = {name: corners.mean(axis=1) for name, corners in triangles.items()}
-    for number, name, way in paths([(phase.moves, phase.seconds) for phase in phases], centers, SAMPLES):
-        for k, axis in enumerate("xyz"):
-            low, high = float(way[..., k].min()), float(way[..., k].max())
+    for number, name, move, seconds, begin in under_way([(x.moves, x.seconds) for x in phases], centers):
+        for k, (axis, low, high) in enumerate(zip("xyz", *move.extent(seconds, begin), strict=True)):
             if low < room[2 * k] or high > room[2 * k + 1]:
                 reached = high if high > room[2 * k + 1] else low
                 raise CaseError(

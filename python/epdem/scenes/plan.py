@@ -11,9 +11,11 @@ from typing import Protocol
 import numpy as np
 import pandas as pd
 
+from ..case.motions import FloatArray, Move, RotateMove
 from ..case.parts import Load, Parts
+from ..case.places import Limits, Vector3
 from ..case.scene import Output, SceneCase
-from ..case.walls import CasePhase, Limits, LinearMove, Move, PressMove, RotateMove, Vector3
+from ..case.walls import CasePhase
 from ..errors import CaseError
 from ..jobs.engine import Engine, Report
 from ..jobs.stage import Tables
@@ -32,7 +34,6 @@ from .limits import (
     refuse_steps,
     refuse_walls_at_faces,
 )
-from .meshes import FloatArray
 from .model import Model, model
 from .timestep import time_step, unstable_steps
 
@@ -83,7 +84,7 @@ class Phase:
         """Whether the walls rest from the step on at which a force is reached; the phase ends with the row."""
         condition = self.case.condition
         of_force = condition is not None and condition.wall is not None
-        return of_force and all(isinstance(move, LinearMove) for move in self.moves.values())
+        return of_force and all(move.constant_velocity for move in self.moves.values())
 
     @property
     def name(self) -> str:
@@ -96,7 +97,7 @@ class Phase:
     def velocity(self, wall: str) -> Vector3:
         """The constant velocity of a wall [m/s]."""
         move = self.moves.get(wall)
-        x, y, z = move.velocity if isinstance(move, LinearMove) else (0.0, 0.0, 0.0)
+        x, y, z = (move and move.constant_velocity) or (0.0, 0.0, 0.0)
         return x, y, z
 
 
@@ -399,7 +400,7 @@ class ScenePlan:
         """The rotations of a wall of triangles: of its surface, and in each phase."""
         moves = (phase.moves.get(wall) for phase in self.phases)
         all_moves = [meshes.surface_rotation(self.scene.meshes[wall]), *moves]
-        return [move for move in all_moves if isinstance(move, RotateMove)]
+        return [move.rotation for move in all_moves if move and move.rotation]
 
     @property
     def summary(self) -> str:
@@ -409,7 +410,7 @@ class ScenePlan:
 
 
 def _driven(phases: Iterable[Phase]) -> list[str]:
-    return sorted({name for p in phases for name, move in p.moves.items() if isinstance(move, PressMove)})
+    return sorted({name for p in phases for name, move in p.moves.items() if move.press})
 
 
 def _rows(output: Output) -> int:
@@ -463,7 +464,7 @@ def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
     loads = {w.name for w in scene.wall} - gates if case.output.loads and not scene.row else set()
     loads |= {p.condition.wall for p in scene.phase if p.condition and p.condition.wall}
     loads |= {m.wall for m in scene.measure if isinstance(m, Load)}
-    loads |= {m.wall for p in scene.phase for m in p.move if isinstance(m, PressMove)}
+    loads |= {m.wall for p in scene.phase for m in p.move if m.press}
     return tuple(w.name for w in scene.wall if w.name in loads)
 
 

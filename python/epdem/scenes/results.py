@@ -17,10 +17,11 @@ import pandas as pd
 
 from ..base import tables as h5
 from ..base.tables import write_array, write_attributes
+from ..case.motions import FloatArray
 from ..jobs.stage import Tables
 from . import meshes
 from .columns import FORCE, NORMAL, SPINS, bodies, columns_of_rows, units
-from .meshes import FloatArray, at_end
+from .meshes import at_end
 from .plan import ScenePlan
 
 ENGINE_TABLES = ("rows", "particles", "contacts", "walls", "phases")

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from ..case.motions import FloatArray, Move, PressMove
 from ..case.parts import Parts
-from ..case.walls import Move, PressMove
 from ..theory.pair import E_star
 from ..theory.viscous import damping_ratio
-from .meshes import FloatArray
 from .model import Model
 
 if TYPE_CHECKING:
@@ -56,9 +55,9 @@ def limited(
     """The phases, in which no wall that a force drives touches spheres at more than its stable speed."""
 
     def slow(move: Move) -> Move:
-        if not isinstance(move, PressMove):
+        if move.press is None:
             return move
-        return move.limited(float(f"{stable_speed(m, scene, triangles, count, move):.3g}"))
+        return move.press.limited(float(f"{stable_speed(m, scene, triangles, count, move.press):.3g}"))
 
     for phase in phases:
         yield replace(phase, case=phase.case.model_copy(update={"move": [slow(move) for move in phase.case.move]}))
@@ -68,10 +67,10 @@ def slower(p: "ScenePlan") -> list[str]:
     """A sentence for each wall that a force drives and that is slower in contact than the case says."""
     return [
         f"scene.phase.{phase.name}.move: with the dashpots of [viscous] wall {name} would oscillate at highest_speed = "
-        f"{move.highest_speed:g} m/s; where spheres touch it, it has at most {move.speed_in_contact:g} m/s"
+        f"{press.highest_speed:g} m/s; where spheres touch it, it has at most {press.speed_in_contact:g} m/s"
         for phase in p.phases
         for name, move in phase.moves.items()
-        if isinstance(move, PressMove) and move.speed_in_contact < move.highest_speed
+        if (press := move.press) and press.speed_in_contact < press.highest_speed
     ]
 
 
@@ -80,7 +79,7 @@ def not_reached(p: "ScenePlan", rows: pd.DataFrame) -> list[str]:
     condition ends."""
     found, begin = [], 0
     for phase in p.phases:
-        presses = {name: move for name, move in phase.moves.items() if isinstance(move, PressMove)}
+        presses = {name: move.press for name, move in phase.moves.items() if move.press}
         for name, move in presses.items() if not phase.case.condition else ():
             after = phase.end - max(p.every, TAIL * (phase.end - begin))
             tail = rows[(rows["step"] > after) & (rows["step"] <= phase.end)]

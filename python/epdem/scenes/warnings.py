@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
+from ..case.motions import FloatArray
 from ..case.outputs import AtRest
 from ..case.parts import Region
 from ..case.walls import Room
@@ -16,7 +17,7 @@ from . import filling, servo, stages
 from .checks import AT_REST, flow_warnings
 from .columns import STRAINS, bodies, last_frame, reduced
 from .limits import dense_beds, depths, largest_density, overlaps
-from .meshes import FloatArray, sheet
+from .meshes import sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
 from .timestep import unstable_steps
 

@@ -152,12 +152,11 @@ def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
 
 def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
     from ..case import scene as scenes
-    from ..case.walls import LinearMove
 
     if not scenes.is_scene(data):
         return []
     scene, fall, found = scenes.parse(data, path).parts, factor**FORCE_POWER, []
-    if any(isinstance(move, LinearMove) for phase in scene.phase for move in phase.move):
+    if any(move.constant_velocity for phase in scene.phase for move in phase.move):
         found.append(
             "a wall that moves with a given velocity compresses the same way: where spheres yield, its forces and "
             f"stresses fall with the strength, by a factor of {factor**STRENGTH_POWER:.3g} (k^{STRENGTH_POWER:g}); "

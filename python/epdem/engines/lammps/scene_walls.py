@@ -3,30 +3,19 @@
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ...base.rendering import number, wall_id
-from ...case.walls import (
-    BoxWall,
-    ConeWall,
-    CylinderWall,
-    LinearMove,
-    MeshWall,
-    Move,
-    PlaneWall,
-    PlateWall,
-    PressMove,
-    RevolvedWall,
-    RotateMove,
-    VibrateMove,
-)
+from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall
 from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import Phase, ScenePlan
-from ..host import refuse
+from ..host import refuse, words_of_motion
 from ..input_script import WRITE_RESTART, bed_height, press_speed
 from . import words
 
@@ -145,26 +134,72 @@ def _numbers(values: Iterable[float]) -> str:
     return " ".join(map(number, values))
 
 
-def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
-    """Changes of a wall in a phase: component of the way [m] or turn [rad], and its formula of T.
+@dataclass(frozen=True)
+class MotionWords:
+    """The motion of a wall. way: formula of each component of its way [m]. T is the time of the motion [s], of a wall
+    that slows as if it did not; of a wall that a force drives its way [m]. power: formula of the power [W]. servo:
+    commands by which a force drives the wall."""
 
-    T is the time of the motion [s], of a wall that slows as if it did not; of a wall that a force drives its way [m].
-    """
-    found: dict[str, str] = {}
-    move: Move | None = phase.moves.get(name)
-    turn = surface_rotation(p.scene.meshes[name])
-    rate = turn.rate if turn else 0.0
-    match move:
-        case LinearMove():
-            found = {axis: f"{number(v)}*T" for axis, v in zip("xyz", move.velocity, strict=True) if v}
-        case VibrateMove():
-            wave = f"sin({number(move.omega)}*T)"
-            found = {axis: f"{number(a)}*{wave}" for axis, a in zip("xyz", move.amplitude, strict=True) if a}
-        case RotateMove():
-            rate += move.rate
-        case PressMove():
-            found = {axis: f"{number(u)}*T" for axis, u in zip("xyz", move.direction, strict=True) if u}
-    return found | ({"turn": f"{number(rate)}*T"} if rate else {})
+    way: dict[str, str]
+    power: str
+    servo: tuple[str, ...] = ()
+
+
+def _along(vector: Sequence[float], formula: str) -> dict[str, str]:
+    return {axis: f"{number(x)}*{formula}" for axis, x in zip("xyz", vector, strict=True) if x}
+
+
+def _force_times(id: str, values: Sequence[float]) -> str:
+    return "+".join(f"f_{id}[{k}]*{number(x)}" for k, x in enumerate(values, 1) if x)
+
+
+def _linear(m: LinearMove, id: str, dt: float) -> MotionWords:
+    return MotionWords(_along(m.velocity, "T"), f"f_{id}[7]")
+
+
+def _rotate(m: RotateMove, id: str, dt: float) -> MotionWords:
+    return MotionWords({}, f"f_{id}[7]")
+
+
+def _vibrate(m: VibrateMove, id: str, dt: float) -> MotionWords:
+    # (sin(wt + wdt) - 2 sin(wt) + sin(wt - wdt))/2 = (cos(wdt) - 1) sin(wt)
+    change, omega = (math.cos(m.omega * dt) - 1.0) / dt, number(m.omega)
+    force = _force_times(id, [a * change for a in m.amplitude])
+    power = f"f_{id}[7]+({force})*sin({omega}*(time-v_{id}_begin))"
+    return MotionWords(_along(m.amplitude, f"sin({omega}*T)"), power)
+
+
+def _press(m: PressMove, id: str, dt: float) -> MotionWords:
+    servo = (
+        f"variable {id}_force equal {_force_times(id, m.direction)}",
+        f"variable {id}_speed equal {press_speed(f'v_{id}_force', m)}",
+        f"fix press_{id} all controller 1 1 -1 0 0 v_{id}_speed 0 {id}_way",
+    )
+    return MotionWords(_along(m.direction, "T"), f"0.5*(f_{id}[7]+v_{id}_force*v_{id}_speed)", servo)
+
+
+MOTIONS: dict[type[Move], Callable[[Any, str, float], MotionWords]] = {
+    LinearMove: _linear,
+    RotateMove: _rotate,
+    VibrateMove: _vibrate,
+    PressMove: _press,
+}
+
+
+def _words(name: str, phase: Phase) -> MotionWords:
+    """The motion of a wall in a phase; of a wall at rest nothing but its power, by the speed of its surface."""
+    if name not in phase.moves:
+        return MotionWords({}, f"f_{wall_id(name)}[7]")
+    words = words_of_motion(MOTIONS, "LAMMPS", phase, name)
+    return words(phase.moves[name], wall_id(name), phase.time_step)
+
+
+def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
+    """Changes of a wall in a phase: component of the way [m] or turn [rad], and its formula of T."""
+    own = phase.moves[name].rotation if name in phase.moves else None
+    turns = filter(None, (surface_rotation(p.scene.meshes[name]), own))
+    rate = sum(turn.rate for turn in turns)
+    return _words(name, phase).way | ({"turn": f"{number(float(rate))}*T"} if rate else {})
 
 
 def _changing(p: ScenePlan, name: str) -> list[str]:
@@ -182,7 +217,7 @@ def _motion_words(p: ScenePlan, name: str) -> str:
         axis, origin = axes.pop()
         shifted = False  # across the axis
         for phase in p.phases:
-            turns = isinstance(phase.moves.get(name), RotateMove)
+            turns = name in phase.moves and phase.moves[name].rotation
             reason = "a region of LAMMPS takes the axis along, and a motion before shifts the wall across it"
             refuse(f"scene.phase.{phase.name}.move", shifted and turns and "rotate", reason)
             rates = _rates(p, name, phase)
@@ -211,23 +246,21 @@ def _state(p: ScenePlan, name: str, number: int) -> dict[str, str]:
 
 def _controlled(phase: Phase, name: str) -> bool:
     """Whether a force controls the speed of a wall: that drives it, or near which it slows."""
-    move = phase.moves.get(name)
-    return isinstance(move, PressMove) or (move is not None and phase.slows is not None)
+    return name in phase.moves and (phase.slows is not None or phase.moves[name].press is not None)
 
 
 def _formulas(p: ScenePlan, name: str, number: int) -> Iterator[str]:
     """Commands that tie a wall to its motion in a phase."""
     id, phase = wall_id(name), p.phases[number]
-    move, rates = phase.moves.get(name), _rates(p, name, phase)
+    servo, rates = _words(name, phase).servo, _rates(p, name, phase)
     time = f"(time-v_{id}_begin)"
     way = f"v_{id}_way" if _controlled(phase, name) else time
     for key in _changing(p, name):
         formula = rates[key].replace("T", time if key == "turn" else way) if key in rates else ""
         terms = [f"v_{id}_{key}0"] * (_begin(p, name, number) > 0) + [formula] * bool(formula)
         yield f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}"
-    if isinstance(move, PressMove):
-        yield from _servo(id, move)
-    elif _controlled(phase, name):
+    yield from servo
+    if _controlled(phase, name) and not servo:
         yield "variable share equal 1.0"
         yield f"fix press_{id} all controller 1 1 -1 0 0 v_share 0 {id}_way"
 
@@ -255,18 +288,7 @@ def power(p: ScenePlan, phase: Phase) -> str:
 
     Number 7 of a wall is its power by the speed of the last step; half of the change to the speed of the next is added.
     """
-    terms = []
-    for name in p.scene.meshes:
-        id, move = wall_id(name), phase.moves.get(name)
-        if isinstance(move, PressMove):
-            terms.append(f"0.5*(f_{id}[7]+v_{id}_force*v_{id}_speed)")
-            continue
-        terms.append(f"f_{id}[7]")
-        if isinstance(move, VibrateMove):  # (sin(wt + wdt) - 2 sin(wt) + sin(wt - wdt))/2 = (cos(wdt) - 1) sin(wt)
-            change = (math.cos(move.omega * phase.time_step) - 1.0) / phase.time_step
-            force = "+".join(f"f_{id}[{k}]*{number(a * change)}" for k, a in enumerate(move.amplitude, 1) if a)
-            terms.append(f"({force})*sin({number(move.omega)}*(time-v_{id}_begin))")
-    return "+".join(terms)
+    return "+".join(_words(name, phase).power for name in p.scene.meshes)
 
 
 def motions_again(p: ScenePlan, number: int, values: Mapping[str, str]) -> list[str]:
@@ -313,11 +335,3 @@ def stop_commands(p: ScenePlan, phase: Phase) -> list[str]:
 def force(name: str, k: int) -> str:
     """A component of the force on a wall at a step."""
     return f"f_{wall_id(name)}[{k}]"
-
-
-def _servo(id: str, move: PressMove) -> Iterator[str]:
-    """Commands that move a wall by its force."""
-    force = "+".join(f"f_{id}[{k}]*{number(u)}" for k, u in enumerate(move.direction, 1) if u)
-    yield f"variable {id}_force equal {force}"
-    yield f"variable {id}_speed equal {press_speed(f'v_{id}_force', move)}"
-    yield f"fix press_{id} all controller 1 1 -1 0 0 v_{id}_speed 0 {id}_way"

@@ -9,7 +9,6 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
-from ...case.walls import LinearMove
 from ...errors import CaseError
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
@@ -148,7 +147,7 @@ def _refuse_skin(p: ScenePlan) -> None:
 
 def _refuse_restarts(p: ScenePlan) -> None:
     """Raise Unsupported for motions that LIGGGHTS's restart files do not hold."""
-    others = any(not isinstance(move, LinearMove) for phase in p.phases for move in phase.moves.values())
+    others = any(not move.constant_velocity for phase in p.phases for move in phase.moves.values())
     if p.restarts and others:
         raise Unsupported(
             "output.restarts: in LIGGGHTS only walls with linear motions go on where they were", "remove it"

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ...base.rendering import number, wall_id
-from ...case.walls import CylinderWall, PlaneWall, RotateMove
+from ...case.walls import CylinderWall, PlaneWall
 from ...scenes.plan import ScenePlan
 from ..input_script import torque_origin
 
@@ -92,7 +92,7 @@ def loads(p: ScenePlan) -> tuple[WallLoad, ...]:
 
 def _leaves(p: ScenePlan, name: str) -> bool:
     """Whether a mesh moves otherwise than about its one axis, so that LIGGGHTS takes the point of its torque along."""
-    return any(name in phase.moves and not isinstance(phase.moves[name], RotateMove) for phase in p.phases)
+    return any(name in phase.moves and not phase.moves[name].rotation for phase in p.phases)
 
 
 def torque(p: ScenePlan, name: str) -> list[str]:

@@ -11,22 +11,22 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...case.parts import Sphere
-from ...case.walls import LinearMove, Move, PressMove, Room, RotateMove, VibrateMove
+from ...case.walls import Room
 from ...scenes import filling
 from ...scenes.limits import PressedBed
 from ...scenes.meshes import surface_rotation
-from ...scenes.plan import Phase, PhaseSteps, ScenePlan
+from ...scenes.plan import PhaseSteps, ScenePlan
 from ..input_script import (
     WRITE_RESTART,
     StopCondition,
     bed_height,
     data_text,
-    press_speed,
     stop_condition,
     taken_places,
     torque_origin,
 )
-from .primitives import Primitive, primitive, torque, tubes
+from .motions import motions, power, vector_words
+from .primitives import Primitive, primitive, tubes
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
@@ -175,10 +175,6 @@ def insertions(p: ScenePlan) -> tuple[InsertFix, ...]:
 KEEP = ("variable kept equal ${share}", "variable kept_at equal ${now}+1", "print share_at_${now}:${share}")
 
 
-def _words(*vectors: Sequence[float]) -> str:
-    return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
-
-
 def _way(p: ScenePlan, name: str) -> list[str]:
     """The way of a wall, with which LIGGGHTS moves the point of its torque."""
     return [f"$(f_{decks.wall_id(name)}[{k}]-({decks.number(x)}))" for k, x in enumerate(torque_origin(p, name), 7)]
@@ -197,27 +193,13 @@ def surface_meshes(p: ScenePlan) -> tuple[SurfaceMesh, ...]:
         origin = torque_origin(p, name)
         if rotation is not None:  # LIGGGHTS takes the words in this order only
             axis, omega = " ".join(f"{x:g}" for x in rotation.axis), decks.number(rotation.rate)
-            words = f" surface_ang_vel origin {_words(rotation.origin)} axis {axis} omega {omega}"
+            words = f" surface_ang_vel origin {vector_words(rotation.origin)} axis {axis} omega {omega}"
         if style and any(origin):
-            words += f" reference_point {_words(origin)}"
+            words += f" reference_point {vector_words(origin)}"
         if mesh.wear:
             words += " wear finnie"
         found.append(SurfaceMesh(decks.wall_id(name), f"{name}.stl", p.wall_types[name], style, words))
     return tuple(found)
-
-
-def _motion(p: ScenePlan, name: str, move: Move, phase: Phase) -> tuple[str, str]:
-    wall = decks.wall_id(name)
-    match move:
-        case LinearMove() if phase.slows is None:
-            words = f"linear {_words(move.velocity)}"
-        case RotateMove():
-            axis = _words(tuple(math.copysign(1.0, move.rate) * x for x in move.axis))
-            period = decks.number(2 * math.pi / abs(move.rate))
-            words = f"rotate origin {_words(move.origin)} axis {axis} period {period}"
-        case LinearMove() | VibrateMove() | PressMove():
-            words = "linear/variable " + " ".join(f"v_speed_{axis}_{name}" for axis in "xyz")
-    return f"fix move_{name} all move/mesh mesh {wall} {words}", f"unfix move_{name}"
 
 
 def _height(p: ScenePlan, bed: PressedBed) -> str:
@@ -248,77 +230,39 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     found: list[DeckPhase] = []
     with_power = "wall_power" in p.row_columns
     for run in p.phase_steps:
-        motions = {name: _motion(p, name, move, run) for name, move in run.moves.items()}
         before, after = run.before, run.after
         rests = before is not None and before.stops  # all walls
         anew = before is None or rests or run.slows is not None
         new = [name for name, x in run.moves.items() if anew or (before and before.moves.get(name) != x)]
-        stop = [end for _, end in motions.values()] if run.stops else []
+        words = motions(run, before, new)
+        start = {
+            name: f"fix move_{name} all move/mesh mesh {decks.wall_id(name)} {x.words}" for name, x in words.items()
+        }
+        stop = [f"unfix move_{name}" for name in words] if run.stops else []
         if stop and with_power:
             still = replace(run, case=run.case.model_copy(update={"move": []}))
             stop.append(f"variable power equal {power(p, still)}")
         part = DeckPhase(
             run=run,
             steps=run.steps,
-            start_commands=tuple(motions[name][0] for name in new),
+            start_commands=tuple(start[name] for name in new),
             gates=tuple(gates[name] for name in run.added),
             resume_gates=tuple(gates[name] for name in run.gates),
-            resume_commands=tuple(begin for begin, _ in motions.values()),
+            resume_commands=tuple(start.values()),
             end_commands=(
                 *(f"unfix {decks.wall_id(name)}" for name in run.removed),
-                *(end for name, (_, end) in motions.items() if after and not (run.stops or name in after.moves)),
+                *(f"unfix move_{name}" for name in words if after and not (run.stops or name in after.moves)),
             ),
             bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
             places=taken_places(p, run.name, "r"),
             driven=tuple((name, _way(p, name)) for name in p.driven_before(run.name)),
             power=power(p, run) if with_power else "",
-            speeds=(*_vibrations(before, run, new), *_drives(run), *_slowed(run)),
+            speeds=(*[("share", "1.0")] * (run.slows is not None), *(v for x in words.values() for v in x.variables)),
             stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop, before=_before),
             restart_commands=(*(KEEP if run.slows is not None else ()), *WRITE_RESTART),
         )
         found.append(part)
     return tuple(found)
-
-
-def _vibrations(before: Phase | None, phase: Phase, new: list[str]) -> Iterator[tuple[str, str]]:
-    """Variables of each wall that vibrates in a phase: angle [rad] and step at its begin, and the speeds [m/s] with
-    which each step ends where the vibration is (LIGGGHTS's `wiggle` adds up speeds, which is off at first order)."""
-    for name, move in phase.moves.items():
-        if isinstance(move, VibrateMove):
-            rate = decks.number(move.omega * before.time_step) if before else ""
-            so_far = f"${{angle_{name}}}+(${{now}}-${{begin_{name}}})*{rate}"
-            yield f"angle_{name}", "0.0" if name in new else so_far
-            yield f"begin_{name}", "${now}"
-            turn = move.omega * phase.time_step
-            mean = 2.0 * math.sin(0.5 * turn) / phase.time_step
-            cosine = f"cos(${{angle_{name}}}+(step-${{begin_{name}}}-0.5)*{decks.number(turn)})"
-            for axis, amplitude in zip("xyz", move.amplitude, strict=True):
-                yield f"speed_{axis}_{name}", f"{decks.number(mean * amplitude)}*{cosine}" if amplitude else "0.0"
-
-
-def _along(fix: str, press: PressMove) -> str:
-    """The force on the spheres along the motion of a wall that a force drives."""
-    return f"-({'+'.join(_times(fix, 1, press.direction))})"
-
-
-def _drives(phase: Phase) -> Iterator[tuple[str, str]]:
-    """Variables of each wall that a force drives in a phase: force along its motion [N], speeds [m/s]."""
-    for name, move in phase.moves.items():
-        if isinstance(move, PressMove):
-            yield f"force_{name}", _along(decks.wall_id(name), move)
-            yield f"speed_{name}", press_speed(f"v_force_{name}", move)
-            for axis, u in zip("xyz", move.direction, strict=True):
-                yield f"speed_{axis}_{name}", f"v_speed_{name}*{decks.number(u)}" if u else "0.0"
-
-
-def _slowed(phase: Phase) -> Iterator[tuple[str, str]]:
-    """Variables of each wall that slows near a force: its speeds [m/s], of which it has a share."""
-    if phase.slows is None:
-        return
-    yield "share", "1.0"
-    for name in phase.moves:
-        for axis, v in zip("xyz", phase.velocity(name), strict=True):
-            yield f"speed_{axis}_{name}", f"{decks.number(v)}*v_share" if v else "0.0"
 
 
 def bodies_file(phase: str) -> str:
@@ -342,33 +286,6 @@ def _data(p: ScenePlan, spheres: Sequence[Sphere], before: int) -> str:
     typed = ((p.model.type_of(s.material), s) for s in spheres)
     rows = [(k, 2 * s.radius, p.model.types[k - 1].density, *s.place, *s.velocity, *s.spin) for k, s in typed]
     return data_text(f"spheres of {p.case.case.title}", len(p.model.types), p.box, rows, before + 1)
-
-
-def _times(name: str, first: int, values: Sequence[float]) -> list[str]:
-    """Products of components of a fix, from number `first` on, and values."""
-    return [f"f_{name}[{first + k}]*{decks.number(v)}" for k, v in enumerate(values) if v]
-
-
-def power(p: ScenePlan, phase: Phase) -> str:
-    """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
-    terms = []
-    for name, mesh in p.scene.meshes.items():
-        id, move = decks.wall_id(name), phase.moves.get(name)
-        for rotation in (surface_rotation(mesh), move):
-            if isinstance(rotation, RotateMove):
-                of_axis = zip(torque(p, name), rotation.axis, strict=True)
-                terms += [f"({words})*{decks.number(rotation.rate * x)}" for words, x in of_axis if x]
-        if isinstance(move, LinearMove):
-            terms += _times(id, 1, move.velocity)
-        if isinstance(move, PressMove):
-            before = press_speed(f"({_along(f'before_{name}', move)})", move)  # the speed of the last step
-            terms.append(f"v_force_{name}*-0.5*(v_speed_{name}+{before})")
-        if isinstance(move, VibrateMove):
-            omega = decks.number(move.omega * phase.time_step)
-            force_times_speed = "+".join(_times(id, 1, [move.omega * a for a in move.amplitude]))
-            terms.append(f"({force_times_speed})*cos(${{angle_{name}}}+(step-${{begin_{name}}})*{omega})")
-    share = "*v_share" if phase.slows is not None and terms else ""
-    return f"-({'+'.join(terms)}){share}" if terms else "0.0"
 
 
 def stl_text(name: str, triangles: np.ndarray) -> str:

@@ -8,7 +8,6 @@ from math import isinf
 import numpy as np
 
 from ...base import rendering as decks
-from ...case.walls import Move
 from ...impacts.plan import Group, Plan, side_by_side
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
@@ -17,6 +16,7 @@ from .classes import ContactClasses, functors, materials
 from .scene_parts import (
     HEAD,
     DeckFill,
+    DeckMotion,
     Stop,
     Wall,
     bodies_file,
@@ -99,7 +99,7 @@ class DeckPhase:
     """
 
     run: PhaseSteps
-    motions: tuple[Move, ...]
+    motions: tuple[DeckMotion, ...]
     bodies: str
     fills: tuple[DeckFill, ...]
     stop: Stop | None
@@ -123,7 +123,7 @@ class SceneDeck:
     placed: bool
     skin: float
     phases: tuple[DeckPhase, ...]
-    motions: tuple[Move, ...]
+    motions: tuple[DeckMotion, ...]
     sampling: int
     works: tuple[str, ...]
     loads: tuple[tuple[str, Sequence[float] | None], ...]

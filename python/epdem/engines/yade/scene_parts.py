@@ -3,19 +3,22 @@
 
 import math
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from ...base import rendering as decks
-from ...case.walls import BoxWall, LinearMove, Move, PlaneWall, PlateWall, PressMove, VibrateMove
+from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ...case.walls import BoxWall, PlaneWall, PlateWall
 from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import SLOWING, Phase, PhaseSteps, ScenePlan
+from ..host import words_of_motion
 from ..input_script import BORNE, bed_height, ended_at, first_look, torque_origin
 
 EDGES = (
@@ -89,21 +92,8 @@ def is_endless(p: ScenePlan, name: str) -> bool:
         return False
     flat = [k for k in range(3) if "xyz"[k] != mesh.axis]
     moves = [phase.moves[name] for phase in p.phases if name in phase.moves]
-    return all(spans(mesh, "xyz"[k], p.box) for k in flat) and not any(_is_along(move, flat) for move in moves)
-
-
-def _is_along(move: Move, axes: Sequence[int]) -> bool:
-    """Whether a wall turns, or moves along one of some axes."""
-    match move:
-        case LinearMove():
-            way = move.velocity
-        case VibrateMove():
-            way = move.amplitude
-        case PressMove():
-            way = move.direction
-        case _:
-            return True
-    return any(way[k] for k in axes)
+    across = not any(move.rotation or any(move.along[k] for k in flat) for move in moves)
+    return across and all(spans(mesh, "xyz"[k], p.box) for k in flat)
 
 
 def walls(p: ScenePlan) -> dict[str, Wall]:
@@ -128,10 +118,57 @@ def _planes(p: ScenePlan) -> dict[str, PlaneWall]:
     return {w.name: w for w in (*p.scene.planes, *p.scene.gates)}
 
 
-def motions(p: ScenePlan, phase: Phase) -> tuple[Move, ...]:
+@dataclass(frozen=True)
+class DeckMotion:
+    """Lines of a script that begin and end the motion of a wall."""
+
+    wall: str
+    kind: str
+    begin: tuple[str, ...]
+    end: tuple[str, ...] = ()
+
+
+def _numbers(values: Sequence[float]) -> str:
+    return f"({', '.join(map(decks.number, values))})"
+
+
+def _linear(m: LinearMove) -> DeckMotion:
+    lines = f'for k in walls["{m.wall}"]:', f"    O.bodies[k].state.vel = {_numbers(m.velocity)}"
+    return DeckMotion(m.wall, m.kind, lines)
+
+
+def _rotate(m: RotateMove) -> DeckMotion:
+    values = {"rotationAxis": _numbers(m.axis), "zeroPoint": _numbers(m.origin)}
+    values |= {"angularVelocity": decks.number(m.rate), "dead": "False"}
+    lines = tuple(f'turns["{m.wall}"].{name} = {value}' for name, value in values.items())
+    return DeckMotion(m.wall, m.kind, lines, (f'turns["{m.wall}"].dead = True',))
+
+
+def _vibrate(m: VibrateMove) -> DeckMotion:
+    line = f'shaken["{m.wall}"] = {_numbers(m.amplitude)}, {decks.number(m.omega)}, O.time'
+    return DeckMotion(m.wall, m.kind, (line,), (f'del shaken["{m.wall}"]',))
+
+
+def _press(m: PressMove) -> DeckMotion:
+    values = map(decks.number, (m.force, m.highest_speed, m.speed_in_contact))
+    line = f'pressed["{m.wall}"] = {_numbers(m.direction)}, {", ".join(values)}'
+    return DeckMotion(m.wall, m.kind, (line,), (f'del pressed["{m.wall}"]',))
+
+
+MOTIONS: dict[type[Move], Callable[[Any], DeckMotion]] = {
+    LinearMove: _linear,
+    RotateMove: _rotate,
+    VibrateMove: _vibrate,
+    PressMove: _press,
+}
+
+
+def motions(p: ScenePlan, phase: Phase) -> tuple[DeckMotion, ...]:
     """Motions of a phase. A surface that turns is a wall of revolution that turns."""
-    found = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
-    return tuple((found | phase.moves).values())
+    turning = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
+    found = {name: _rotate(rotation) for name, rotation in turning.items()}
+    own = {name: words_of_motion(MOTIONS, "YADE", phase, name)(move) for name, move in phase.moves.items()}
+    return tuple((found | own).values())
 
 
 def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
