@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Writes docs/invariance.md: which contact models give the same results in every set-up of one scene in LIGGGHTS.
+"""The table of invariance in docs/evidence.md: which models give the same results in every set-up in LIGGGHTS.
 
 Run: .venv/bin/python bench/liggghts_invariance.py
 """

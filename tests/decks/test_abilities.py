@@ -75,7 +75,7 @@ OBLIQUE = {"angles": ["20 deg"]}
     ],
 )
 def test_a_refusal_names_the_engines_that_take_the_job(name, lacks, changes, others, tmp_path):
-    """The names are written here from docs/choose.md; tests without a mark have YADE without its module."""
+    """The names are written here, not read from the engines; tests without a mark have YADE without its module."""
     tool = ALL[name]()
     tool.features = tool.features ^ {lacks} if lacks in (Feature.FRICTION, Feature.DASHPOT) else tool.features
     p, prediction = planned(changes)
