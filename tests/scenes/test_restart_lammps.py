@@ -79,13 +79,16 @@ def test_motions_that_liggghts_cannot_continue_are_refused_there():
         check(scene_engine("liggghts"), plan(parse(moving(restarts=5))))
 
 
-def test_a_damaged_frame_is_written_again(tmp_path):
-    path = write_case(moving(restarts=6), tmp_path)
+@pytest.mark.parametrize(("kind", "left"), [("particles", -200), ("contacts", 0)])
+def test_a_damaged_frame_is_written_again(kind, left, tmp_path):
+    """A file of no byte is no frame without contacts: an engine that was killed had opened it."""
+    path = write_case(moving(restarts=6, contacts=10), tmp_path)
     whole = run(path, "lammps", out=tmp_path / "whole")
     first = sorted((tmp_path / "whole").glob("restart.*.bin"))
     assert len(first) <= 2  # of those that the engine has gone on after only the newest is kept
-    later = tmp_path / "whole" / f"particles.{whole.plan.steps}.txt"
+    later = tmp_path / "whole" / f"{kind}.{whole.plan.steps}.txt"
     text = later.read_text()
-    later.write_text(text[:-200])
+    later.write_text(text[:left])
     again = run(path, "lammps", out=tmp_path / "whole", resume=True, force=True)
     assert again.results.particles.equals(whole.results.particles) and later.read_text() == text
+    assert again.results.contacts.equals(whole.results.contacts) and len(whole.results.contacts)

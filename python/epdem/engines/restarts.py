@@ -51,7 +51,8 @@ def pruning(folder: Path, report: Report) -> Report:
 def choose(frames: Frames, out: Path) -> tuple[int, list[int]]:
     """(step to continue from, steps of earlier frames that are missing or not whole and will stay so).
 
-    The newest restart file from which the damaged frames are written again; if there is none, the newest. Raises
+    The newest restart file before the damaged frames, which are written again; else the one in whose step the first of
+    them stands, for what an engine computes there before its next step can differ; if there is none, the newest. Raises
     CaseError if there is none at all.
     """
     p, folder = frames.plan, frames.folder
@@ -60,8 +61,8 @@ def choose(frames: Frames, out: Path) -> tuple[int, list[int]]:
     if not steps:
         raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
     lost = replace(frames, plan=p).damaged(steps[-1])
-    repairing = [step for step in steps if not lost or step <= lost[0]]
-    step = repairing[-1] if repairing else steps[-1]
+    before = [step for step in steps if not lost or step < lost[0]]
+    step = (before or [step for step in steps if step == lost[0]] or steps)[-1]
     return step, [s for s in lost if s < step]
 
 

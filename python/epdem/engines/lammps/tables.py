@@ -47,11 +47,11 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
 
 
 def _frame(path: Path, names: list[str]) -> pd.DataFrame:
-    """The table of a file. Raises OSError, ValueError if it is not whole."""
-    lines = path.read_text(encoding="utf-8").split("\n")
+    """The table of a dump. Raises OSError, ValueError if it is not whole; its head tells the number of its lines."""
+    head, lines = (text := path.read_text(encoding="utf-8").split("\n"))[:9], text[9:]
     values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
-    if len(lines) != len(values) + 1:
-        raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
+    if len(head) < 9 or not len(values) == len(lines) - 1 == int(head[3]):
+        raise ValueError(f"{len(lines) - 1} lines of {head[3] if len(head) > 3 else 'a file without a head'}")
     return pd.DataFrame(values, columns=names)
 
 
