@@ -44,7 +44,7 @@ pair_style gran model hertz
 HYPERCUBE = ("--latin-hypercube", "2")
 SWEEP = {"given": "numerics.error=1e-2", "points": "points.csv", "latin_hypercube": "3", "seed": "2", "jobs": "1"}
 SWEEP |= {"engine": "yade", "law": "cavity", "ranks": "2", "out": "there", "dry_run": None, "retry_failed": None}
-SWEEP |= {"slurm": "partition=p", "force": None}
+SWEEP |= {"slurm": "partition=p", "only": "1", "force": None}
 ONE_IMPACT = {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}
 KINDS = {  # words of a call without the option, and the value of every option
     "run impacts": (("run", "steel.toml"), RUN),

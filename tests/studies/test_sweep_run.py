@@ -20,7 +20,7 @@ from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
 from epdem.report import sweeps
-from epdem.studies.sweep import folder, local, run, slurm
+from epdem.studies.sweep import folder, local, points, run, slurm
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -268,6 +268,41 @@ def test_200_points_killed_five_times_give_the_same_table_and_no_finished_point_
     assert {k: v for k, v in finished(out).items() if k in before} == before
     subprocess.check_call(command(case, tmp_path / "whole"), stdout=subprocess.DEVNULL)
     assert (out / "sweep.csv").read_bytes() == (tmp_path / "whole/sweep.csv").read_bytes()
+
+
+@pytest.mark.slow
+def test_calls_for_some_points_work_side_by_side_and_a_whole_call_finds_them_done(case, tmp_path):
+    """Three at once in a new folder, as tasks of an array: each says by its exit code how its points ended."""
+    out, words = tmp_path / "out", ["--set", "impact.body.radius=1 mm,2 mm,4 mm,5 mm", "--json"]
+    whole = [EPDEM, "sweep", str(case), "-e", "embedded", "-o", str(out), *words]
+    calls = {only: subprocess.Popen([*whole, "--only", only], stdout=subprocess.PIPE) for only in ("2", "3-4,3", "1")}
+    said = {only: json.loads(process.communicate(timeout=120)[0]) for only, process in calls.items()}
+    assert {only: (x["ran"], x["done"], x["failed"]) for only, x in said.items()} == {
+        "1": (1, 1, 0),
+        "2": (1, 1, 0),
+        "3-4,3": (2, 2, 0),
+    }
+    assert all(process.returncode == 0 for process in calls.values()) and not (out / "sweep.csv").exists()
+    before = finished(out)
+    assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--table", "--json"]))["done"] == 4
+    assert json.loads(subprocess.check_output(whole))["ran"] == 0 and finished(out) == before
+    alone = sweep(case, tmp_path / "alone", {"impact.body.radius": "1 mm,2 mm,4 mm,5 mm"})
+    assert (out / "sweep.csv").read_bytes() == (tmp_path / "alone/sweep.csv").read_bytes() and alone.ran == 4
+
+
+def test_points_of_a_call_are_those_of_the_sweep(case, tmp_path):
+    """One that is outside of its tolerance has not passed, whatever the others do."""
+    assert points.numbers("7, 9-12,9", 12) == [7, 9, 10, 11, 12]
+    for wrong in ("", "0", "13", "3-2", "1,,2", "-2", "1-", "x", "1.0"):
+        with pytest.raises(CaseError, match=r"--only .*: must be points from 1 to 12, as 7,9-12; --dry-run lists them"):
+            points.numbers(wrong, 12)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/note.txt").write_text("of the user")
+    with pytest.raises(CaseError, match=r"mine: note.txt was there before"):
+        sweep(case, tmp_path / "mine", only=[1])
+    case.write_text(case.read_text().replace("e_n = 1e-4", "e_n = 1e-12"))
+    found = sweep(case, tmp_path / "out", only=[2])
+    assert not found.passed and found.ran == 1 and set(found.table["point"]) == {2}
 
 
 def test_the_commands_say_what_they_do(case, tmp_path):

@@ -219,6 +219,18 @@ def _lock(folder: Path, lock: TextIO) -> None:
         raise OSError(error.errno, error.strerror, str(folder / LOCK)) from None
 
 
+def running(folder: Path) -> bool:
+    """Whether a process on this machine is at work in a folder now."""
+    try:
+        with (folder / LOCK).open() as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return False
+
+
 def _await_engines(folder: Path, place: Path) -> None:
     """Wait until the engine of a run here that was killed has ended, too. Raises CaseError for one that goes on."""
     end = time.monotonic() + PATIENCE

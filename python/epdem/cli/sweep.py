@@ -34,6 +34,9 @@ def sweep(
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of each point")] = 1,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="points at once (default: cores)")] = None,
     out: Out = None,
+    only: Annotated[
+        str | None, typer.Option(help="run these points alone, as 7,9-12, beside other such calls; writes no table")
+    ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and print the points; nothing runs")] = False,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="run failed points again")] = False,
     slurm: Annotated[
@@ -44,7 +47,7 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """Run a case or scene at many points; the same command again runs only missing and changed points."""
-    from ..studies.sweep.points import settings
+    from ..studies.sweep.points import numbers, settings
     from ..studies.sweep.run import check_points, plan
     from ..studies.sweep.run import run as run_points
     from ..studies.sweep.slurm import parameters, run_jobs
@@ -62,13 +65,15 @@ def sweep(
         latin_hypercube=latin_hypercube,
         seed=1 if seed is None else seed,
     )
+    chosen = None if only is None else numbers(only, len(planned.points))
     if dry_run:
-        refuse_options(case, "nothing runs", slurm=slurm, retry_failed=retry_failed, force=force)
+        refuse_options(case, "nothing runs", only=only, slurm=slurm, retry_failed=retry_failed, force=force)
         check_points(planned, range(1, len(planned.points) + 1), jobs, plans=True)
         title = f"{planned.name}: {len(planned.points)} points on {', '.join(planned.engines)}"
         document = {"case": planned.name, "points": planned.points}
         raise answer(document, [frame_table(title, points_of(planned))], as_json)
     if slurm:
+        refuse_options(case, "the jobs of --slurm run all points", only=only)
         refuse_options(case, "give the jobs of a cluster by --slurm array_parallelism=N", jobs=jobs)
     by = partial(run_jobs, given=parameters(slurm)) if slurm else None
     with bar(planned.name, "points") as report:
@@ -79,10 +84,12 @@ def sweep(
             by=by,
             retry_failed=retry_failed,
             force=force,
+            only=chosen,
             report=report,
         )
-    outcome.report()
-    raise _answer(outcome, as_json)
+    if chosen is None:
+        outcome.report()
+    raise _answer(outcome, as_json, only=chosen is not None)
 
 
 def status(
@@ -111,7 +118,7 @@ def _failed(failures: list[dict[str, Any]]) -> list[Shown]:
     return [*shown, Text(f"... and {left} more", style="red")] if left > 0 else shown
 
 
-def _answer(result: "SweepOutcome", as_json: bool) -> typer.Exit:
+def _answer(result: "SweepOutcome", as_json: bool, *, only: bool) -> typer.Exit:
     """Print the failed points and a summary."""
     from ..studies.sweep.folder import DONE, FAILED
 
@@ -119,10 +126,13 @@ def _answer(result: "SweepOutcome", as_json: bool) -> typer.Exit:
     failures = result.table[result.table["status"] == FAILED][["point", "folder", "reason"]].to_dict("records")
     about = {"case": result.sweep.name, "passed": result.passed, "folder": str(result.folder), "ran": result.ran}
     outside = result.table[(result.table["status"] == DONE) & ~result.table["passed"]]["point"].nunique()
-    text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
+    text = f"{counts[DONE]} of {result.table['point'].nunique()} points done, {result.ran} of them just now"
     text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
     text += f"; {outside} outside tolerance" if outside else ""
-    summary = f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html"
+    there = f"see {result.folder}/sweep.csv and report.html"
+    if only:
+        there = f"the same command without --only writes {result.folder}/sweep.csv and report.html"
+    summary = f"{result.sweep.name}: {text}; {there}"
     document = about | counts | {"failures": failures, "warnings": result.warnings}
     return answer(document, [*_failed(failures), *warned(result.warnings), summary], as_json, result.passed)
 

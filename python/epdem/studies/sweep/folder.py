@@ -7,12 +7,14 @@ has `running.json` instead. `results.h5`, of engines with decks, holds the table
 or the version of epdem has changed and the inputs of the engine have not.
 """
 
+import contextlib
 import copy
 import hashlib
 import json
 import os
 import socket
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -59,6 +61,11 @@ class Sweep:
         """The SI unit of each key that the points set; None for a key that is no quantity."""
         keys = keys_of(self.data(1))
         return {name: keys[name].unit for point in self.points[:1] for name in point}
+
+    @property
+    def numbers(self) -> range:
+        """The numbers of the points, from 1."""
+        return range(1, len(self.points) + 1)
 
     @property
     def default_folder(self) -> Path:
@@ -125,6 +132,13 @@ def read(folder: Path) -> Sweep:
         raise CaseError(f"{folder}: not a folder of a sweep; 'epdem sweep CASE --out {folder}' makes one") from None
 
 
+def is_stored(sweep: Sweep, folder: Path) -> bool:
+    """Whether the definition in `folder` is that of this sweep."""
+    with contextlib.suppress(CaseError):
+        return json.dumps(asdict(read(folder))) == json.dumps(asdict(sweep))
+    return False
+
+
 def point_folder(sweep: Sweep, folder: Path, number: int) -> Path:
     """The folder of a point."""
     return folder / POINTS / sweep.identities[number - 1]
@@ -154,7 +168,7 @@ def is_finished(sweep: Sweep, folder: Path, number: int) -> bool:
 
 def records(sweep: Sweep, folder: Path) -> list[dict[str, Any]]:
     """`record` of every point, in their order."""
-    return [record(sweep, folder, n) for n in range(1, len(sweep.points) + 1)]
+    return [record(sweep, folder, n) for n in sweep.numbers]
 
 
 def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
@@ -192,8 +206,8 @@ def end(
     (place / STARTED).unlink(missing_ok=True)
 
 
-def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:
-    """The numbers of the points to run: all unfinished points, once where points are equal."""
+def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool, only: Sequence[int] | None = None) -> list[int]:
+    """The numbers of the points to run: unfinished points, of these `only`, once where points are equal."""
     done = (DONE,) if retry_failed else (DONE, FAILED)
-    wanted = [n for n, about in enumerate(records(sweep, folder), start=1) if about["state"] not in done]
+    wanted = [n for n in only or sweep.numbers if record(sweep, folder, n)["state"] not in done]
     return list({sweep.identities[n - 1]: n for n in reversed(wanted)}.values())[::-1]

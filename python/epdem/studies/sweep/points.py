@@ -29,6 +29,18 @@ def require_key(key: str, keys: dict[str, Key], place: str) -> Key:
     raise CaseError(f"{place}: the case has no key {key!r}; the nearest: {nearest(key, keys)}")
 
 
+def numbers(text: str, count: int) -> list[int]:
+    """The numbers of points in a text as "7,9-12", of `count` points. Raises CaseError."""
+    found: list[int] = []
+    for part in text.split(","):
+        ends = re.fullmatch(r"\s*([0-9]{1,9})\s*(?:-\s*([0-9]{1,9})\s*)?", part)
+        low, high = (int(ends[1]), int(ends[2] or ends[1])) if ends else (0, 0)
+        if not 1 <= low <= high <= count:
+            raise CaseError(f"--only {part!r}: must be points from 1 to {count}, as 7,9-12; --dry-run lists them")
+        found += range(low, high + 1)
+    return list(dict.fromkeys(found))
+
+
 def _exclusive_keys(key: str, data: dict[str, Any]) -> tuple[str, ...]:
     """Alternatives of `key`, of which a case may have one."""
     if key == "numerics.error":

@@ -6,6 +6,7 @@ import errno
 import math
 import re
 import shutil
+import time
 import tomllib
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,7 +18,7 @@ from typing import Any
 import pandas as pd
 
 from ...base.declarations import declarations
-from ...base.files import claim
+from ...base.files import claim, running
 from ...case import impact, scene
 from ...case.keys import keys_of
 from ...case.scene import is_scene
@@ -39,6 +40,7 @@ from .table import numbers_of
 
 SEPARATOR = " | "  # of the warnings of a row
 SHARES = 4  # of points, for each job; a start of a process takes as long as some impacts
+JOIN_TIMEOUT = 10.0  # [s] that another call may keep the folder while it writes the definition
 FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full disk
 
 
@@ -285,24 +287,43 @@ def run(
     by: Work | None = None,
     retry_failed: bool = False,
     force: bool = False,
+    only: Sequence[int] | None = None,
     report: Report = lambda done, total: None,
 ) -> SweepOutcome:
     """Run the missing and changed points of a sweep and write its table.
 
-    by: what runs the points; None: `jobs` processes on this machine (default: as many as it has cores for). Raises
-    CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it, the same
-    call goes on where it ended.
+    only: numbers of points; the table of the outcome has only these and is not written, so that several calls may be at
+    work on other points in one folder. by: what runs the points; None: `jobs` processes on this machine (default: as
+    many as it has cores for). Raises CaseError before anything runs if a point is wrong, OSError if results cannot be
+    stored. Whatever ends it, the same call goes on where it ended.
     """
-    check_points(sweep, store.to_do(sweep, folder, retry_failed=retry_failed), jobs)
+    check_points(sweep, store.to_do(sweep, folder, retry_failed=retry_failed, only=only), jobs)
     by = by or partial(work, jobs=jobs or max(1, local.cores() // sweep.ranks))
-    with claim(folder, force=force):
-        store.write(sweep, folder)
-        numbers, done = store.to_do(sweep, folder, retry_failed=retry_failed), 0
+    with _share(sweep, folder, force) if only else claim(folder, force=force):
+        if not only:
+            store.write(sweep, folder)
+        numbers, done = store.to_do(sweep, folder, retry_failed=retry_failed, only=only), 0
         report(done, len(numbers))
         for ended in by(sweep, folder, numbers):
             done += ended
             report(done, len(numbers))
-        return SweepOutcome(sweep, folder, table.write(sweep, folder), len(numbers))
+        found = table.collect(sweep, folder, only) if only else table.write(sweep, folder)
+        return SweepOutcome(sweep, folder, found, len(numbers))
+
+
+@contextlib.contextmanager
+def _share(sweep: Sweep, folder: Path, force: bool) -> Iterator[None]:
+    """A folder with the definition of the sweep, which other calls use, too. Raises CaseError."""
+    end = time.monotonic() + JOIN_TIMEOUT
+    while not store.is_stored(sweep, folder):
+        try:
+            with claim(folder, force=force):
+                store.write(sweep, folder)
+        except CaseError:
+            if time.monotonic() > end or not running(folder):
+                raise
+            time.sleep(0.1)  # another call writes the definition
+    yield
 
 
 def record_death(sweep: Sweep, folder: Path, number: int, how: str) -> None:

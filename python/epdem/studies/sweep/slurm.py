@@ -5,7 +5,6 @@ submitit submits and requeues. What is finished is known from the folders of the
 its walltime or preempted is queued again and goes on, and so does a sweep whose command is given again.
 """
 
-import fcntl
 import json
 import shlex
 import signal
@@ -16,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...base.files import LOCK, write_text
+from ...base.files import running, write_text
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from .folder import Sweep
@@ -202,15 +201,3 @@ def status(folder: Path) -> dict[str, Any]:
         "work_left": left * mean if left else 0.0,
         "failures": failed,
     }
-
-
-def running(folder: Path) -> bool:
-    """Whether a process on this machine is at work in the folder of a sweep now."""
-    try:
-        with (folder / LOCK).open() as lock:
-            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except FileNotFoundError:
-        return False
-    except OSError:
-        return True
-    return False

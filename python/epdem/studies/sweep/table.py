@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """All points of a sweep in one table, sweep.csv."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +25,15 @@ def points_of(sweep: Sweep) -> pd.DataFrame:
     return pd.DataFrame([{"point": n, **point} for n, point in enumerate(sweep.points, start=1)])
 
 
-def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
-    """A row for every row of every point: its number, folder, keys in SI, state and reason, then its results.
+def collect(sweep: Sweep, folder: Path, only: Sequence[int] | None = None) -> pd.DataFrame:
+    """A row for every row of every point, or of the points `only`: number, folder, keys in SI, state and reason, then
+    the results.
 
     A point without results has one row. `attrs["units"]` gives the SI units by column.
     """
     rows: list[dict[str, Any]] = []
-    for n, about in enumerate(store.records(sweep, folder), start=1):
+    for n in only or sweep.numbers:
+        about = store.record(sweep, folder, n)
         head = {"point": n, "folder": f"{store.POINTS}/{sweep.identities[n - 1]}", **_keys(sweep, n)}
         head |= {"status": about["state"], "reason": about.get("reason", "")}
         results = about.get("rows") or {}
