@@ -25,13 +25,13 @@ def relative(a, b):
 
 
 def test_two_ranks_give_the_energy_of_one_through_exchange_of_atoms_and_new_lists(tmp_path):
-    """The order of sums differs; collisions amplify this, 1e-10 after 3,000 steps."""
-    text = bed(TWO_TYPES, types=2) + "run 3000\n"
+    """The order of sums differs; collisions amplify this, 1e-10 after 3,000 steps; here 1,500."""
+    text = bed(TWO_TYPES, types=2) + "run 1500\n"
     one, _ = run(text, tmp_path / "one")
     two, _ = run(text, tmp_path / "two", ranks=2)
     assert int(re.search(r"Neighbor list builds = (\d+)", one)[1]) >= 5
     energy = column(one, "KinEng")
-    assert energy[-1] < 0.7 * energy[0]
+    assert energy[-1] < 0.95 * energy[0]
     assert relative(energy, column(two, "KinEng")) <= 1e-9
     assert relative(column(one, "Press"), column(two, "Press")) <= 1e-7
 

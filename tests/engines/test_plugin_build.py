@@ -138,6 +138,7 @@ def test_the_number_of_history_values_is_the_one_that_restart_files_keep(tmp_pat
     )
 
 
+@pytest.mark.thorough
 def test_the_level_of_optimisation_is_the_users_if_he_gives_one(tmp_path):
     """Else Release means -O3."""
     for flags, level in (("", "-O3"), ("-O1 -g", "-O1")):
