@@ -4,6 +4,6 @@
 import pytest
 
 
-def thorough(*values, unless=False, **named):
+def thorough(*values, unless=False, marks=(), **named):
     """pytest.param of the values, for `make thorough` alone; `unless`: for `make test`."""
-    return pytest.param(*values, marks=[] if unless else [pytest.mark.thorough], **named)
+    return pytest.param(*values, marks=[*marks] if unless else [*marks, pytest.mark.thorough], **named)

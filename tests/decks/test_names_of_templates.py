@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Each name that a template reads of a deck is there by its type, also in branches that no stored deck takes."""
 
+import functools
 import types
 import typing
 from dataclasses import dataclass, field
@@ -142,10 +143,16 @@ class Reader:
                 reader.walk(part)
 
 
+@functools.cache
+def parsed(path: Path) -> nodes.Template:
+    return jinja2.Environment().parse(path.read_text())
+
+
+@functools.cache
 def macros_of(path: Path) -> dict[str, object]:
     """The macros of a file, and of the files that it imports."""
     reader = Reader(path, {})
-    for node in jinja2.Environment().parse(path.read_text()).body:
+    for node in parsed(path).body:
         if isinstance(node, nodes.Macro | nodes.Import | nodes.FromImport):
             reader.walk(node)
     return reader.names
@@ -153,7 +160,7 @@ def macros_of(path: Path) -> dict[str, object]:
 
 def names_read(path: Path, deck: type) -> set[tuple[str, str]]:
     reader = Reader(path, {"deck": deck})
-    reader.walk(jinja2.Environment().parse(path.read_text()))
+    reader.walk(parsed(path))
     return reader.read
 
 

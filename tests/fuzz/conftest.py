@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, settings
 from hypothesis.database import DirectoryBasedExampleDatabase
 
-FEW = 20
+FEW = 10
 few = settings(derandomize=True, deadline=None, suppress_health_check=list(HealthCheck), max_examples=FEW)
 settings.register_profile("few", few)
 settings.register_profile(

@@ -45,10 +45,10 @@ def beams(tmp_path, surface_energy=None, **contact):
         fill=[{"name": "table", "file": "spheres.csv"}],
         phase=[
             {"name": "down", "duration": "8 ms", "move": [down]},
-            {"name": "up", "duration": "6 ms", "move": [up], "time_step": "1e-6 s"},
+            {"name": "up", "duration": "6 ms", "move": [up], "time_step": "5e-6 s"},
         ],
     )
-    data["numerics"] = {"time_step": "2e-6 s"}
+    data["numerics"] = {"time_step": "1e-5 s"}
     pairs = [{"between": ["glass", "steel"], "friction": 0.4}]
     data["contact"] = {"friction": 0.3, "wall_friction": 0.2, "pairs": pairs, **contact}
     if surface_energy:
@@ -239,7 +239,7 @@ def test_regions_of_a_profile_are_not_named_as_a_wall():
 
 def test_borders_of_ranks_that_move_change_nothing_but_the_time(tmp_path):
     """A bed in the lower half of its room, on two ranks above one another, and on one."""
-    data = moved("linear") | {"numerics": {"time_step": "1e-5 s", "processors": "z", "balance": 200}}
+    data = moved("linear") | {"numerics": {"time_step": "2e-5 s", "processors": "z", "balance": 100}}
     data["scene"]["phase"] = [{"name": "fall", "duration": "30 ms"}]
     data["scene"]["fill"][0]["region"]["z"] = ["0 mm", "14 mm"]
     data["output"] = {"rows": 30, "particles": 3, "energy": True}

@@ -267,7 +267,7 @@ def numbers_in(files):
     return re.sub(number, "#", text), np.array(re.findall(number, text), float)
 
 
-@tries(25)
+@tries(8)
 @given(chosen=CHOICES)
 def test_other_units_make_the_same_deck(chosen, folder):
     assume(not sentences_against(chosen))
@@ -341,7 +341,7 @@ THROUGH_FACES = {"room": "periodic", "bodies": "table", "measure": "porosity", "
 
 
 @pytest.mark.liggghts
-@tries(8, phases=[Phase.explicit, Phase.generate])
+@tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"contact": "cohesion"}, ranks=1)  # of all models cohesion alone has a history
 @example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"}, ranks=1)
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
@@ -365,7 +365,7 @@ def test_yade_runs_what_is_drawn(chosen, folder):
 
 
 @needs_lammps
-@tries(8, phases=[Phase.explicit, Phase.generate])
+@tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
 @example(chosen=PLAIN | {"room": "periodic along y", "bodies": "bodies that overlap", "output": "energy"}, ranks=2)
 @example(chosen=PLAIN | RUBBED, ranks=1)
@@ -386,7 +386,8 @@ ALIKE = SLOTS | {
 
 @needs_lammps
 @pytest.mark.liggghts
-@tries(12, phases=[Phase.explicit, Phase.generate])
+@tries(3, phases=[Phase.explicit, Phase.generate])
+@example(chosen=PLAIN | {"dashpot": "dashpot", "walls": "open box", "phases": "wall turns", "output": "frames"})
 @given(chosen=st.fixed_dictionaries({slot: st.sampled_from(sorted(options)) for slot, options in ALIKE.items()}))
 def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
     assume(not sentences_against(chosen))

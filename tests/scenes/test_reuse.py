@@ -18,11 +18,12 @@ from epdem.impacts.run import run as run_impacts
 from epdem.scenes import results
 from epdem.scenes.run import run as run_scene
 from epdem.studies.sweep import run as sweeps
+from marks import thorough
 
 HOSTS = [
     pytest.param("liggghts", marks=pytest.mark.liggghts),
     pytest.param("yade", marks=pytest.mark.yade("module")),
-    "lammps",
+    pytest.param("lammps", marks=pytest.mark.lammps),
 ]
 STEEL = (Path(__file__).parents[2] / "cases/steel_wall.toml").read_text()
 IMPACTS = STEEL.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', '["1 m/s", "5 m/s"]')
@@ -131,7 +132,7 @@ def test_a_scene_runs_again_for_what_the_engine_reads_alone(host, tmp_path, monk
     assert again(scene()) == 1
 
 
-@pytest.mark.parametrize("host", HOSTS)
+@pytest.mark.parametrize("host", [HOSTS[0], *(thorough(*h.values, marks=h.marks) for h in HOSTS[1:])])
 def test_a_disk_that_is_full_at_the_end_costs_no_second_run(host, tmp_path, monkeypatch):
     """The results could not be stored: the next run makes them from the frames; not from those of other inputs, and
     not if a frame is missing."""

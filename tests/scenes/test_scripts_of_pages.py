@@ -13,13 +13,16 @@ from stored_runs import STORED
 
 from epdem.case.scene import load
 from epdem.engines.liggghts.engine import Liggghts
+from marks import thorough
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.liggghts
 SHORT = [  # commands of pages with arguments for less
     pytest.param("bench/adhesion.py", "--liggghts 2", id="adhesion"),
-    pytest.param("bench/million.py", "--cells 2 --steps 4 --steps-alone 2", id="million"),
-    pytest.param("bench/yade_packing.py", "40", id="yade_packing", marks=pytest.mark.yade("module")),
+    thorough("bench/million.py", "--cells 2 --steps 4 --steps-alone 2", id="million"),
+    pytest.param(
+        "bench/yade_packing.py", "40", id="yade_packing", marks=[pytest.mark.yade("module"), pytest.mark.thorough]
+    ),
 ]
 HERE = {"lean", "community", "laws", "lammps_speed", "scenes_speed", "yade_speed", "steps", "compaction_powder"}
 ELSEWHERE = {  # the test that runs what a script computes
@@ -97,6 +100,7 @@ def test_the_laws_page_runs_impacts(scripts):
     assert e_n[0] / e_n[1] == pytest.approx(5**0.25, rel=1e-3) and error < 1e-3  # far beyond yield e_n falls as v^-1/4
 
 
+@pytest.mark.thorough
 @pytest.mark.lammps
 def test_a_bed_in_lammps_is_timed(scripts, tmp_path):
     import lammps_speed
@@ -114,6 +118,7 @@ def test_scenes_of_both_laws_are_timed(scripts):
         assert scenes_speed.measure(texts, model, environment)["processor"] > 0.0
 
 
+@pytest.mark.thorough
 @pytest.mark.yade("module")
 def test_contacts_of_yade_are_timed(scripts, tmp_path, monkeypatch):
     import yade_speed
@@ -130,6 +135,7 @@ def test_steps_of_the_c_interface_are_timed(scripts):
     assert all(steps.batch(name, passes=1) > 0.0 for name in ("hertz", "meyer", "cavity"))
 
 
+@pytest.mark.thorough
 def test_a_powder_is_pressed_with_each_law_of_the_page(scripts, tmp_path, monkeypatch, capsys):
     import compaction_powder
 

@@ -142,9 +142,9 @@ def test_every_block_of_the_tour_runs(tmp_path):
 @pytest.mark.parametrize(
     "page",
     [
-        "adhesion",
-        "partial_slip",
         "yade",
+        thorough("adhesion"),
+        thorough("partial_slip"),
         thorough("laws"),
         thorough("scenes"),
         thorough("press"),

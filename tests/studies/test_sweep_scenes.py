@@ -166,7 +166,7 @@ def test_an_engine_that_dies_in_a_resumed_scene_is_a_failed_point(bed, tmp_path,
 def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
     bed.write_text(BED.replace("restarts = 0", "restarts = 10"))
     out = tmp_path / "out"
-    command = [EPDEM, "sweep", str(bed), "--set", "scene.count=120", "-o", str(out), "-j", "1"]
+    command = [EPDEM, "sweep", str(bed), "--set", "scene.count=60", "-o", str(out), "-j", "1"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
     end = time.monotonic() + 100
     while process.poll() is None and time.monotonic() < end and len(list(out.glob("points/*/restart.*.bin"))) < 2:
@@ -179,7 +179,7 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
     subprocess.check_call(command, stdout=subprocess.DEVNULL)
     place = folder.point_folder(folder.read(out), out, 1)
     assert (place / "in.resume").exists()
-    whole = run.run(run.plan(bed, {"scene.count": "120"}), tmp_path / "whole")
+    whole = run.run(run.plan(bed, {"scene.count": "60"}), tmp_path / "whole")
     last = [
         results.read(p).tables["rows"].iloc[-1] for p in (place / "results.h5", *whole.folder.glob("points/*/*.h5"))
     ]
