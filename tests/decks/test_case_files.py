@@ -21,19 +21,6 @@ CASES = Path(__file__).parents[2] / "cases"
 STEEL = read_toml(CASES / "steel_wall.toml")
 
 
-def changed(place: str, value):
-    data = copy.deepcopy(STEEL)
-    at = data
-    *path, last = place.split(".")
-    for key in path:
-        at = at.setdefault(key, {})
-    if value is KeyError:
-        del at[last]
-    else:
-        at[last] = value
-    return data
-
-
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
 def test_every_case_of_the_project_is_valid(path):
     case = scene.load(path) if scene.is_scene(read_toml(path)) else experiment(load(path))
@@ -101,71 +88,6 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         to_si(text, "m")
 
 
-@pytest.mark.parametrize(
-    ("place", "value", "says"),
-    [
-        ("materials.steel.poisson_ratio", 30, "materials.steel.poisson_ratio = 30, must lie in [-0.99, 0.5]; percent?"),
-        ("materials.steel.poisson_ratio", -0.9999999999, "poisson_ratio = -0.9999999999, must lie in [-0.99, 0.5]"),
-        ("materials.steel.young_modulus", "208 kg", "wrong dimension"),
-        (
-            "measured",
-            {"source": "x", "speeds": ["1 m/s"], "e_n": [1.3]},
-            "measured.e_n.0 = 1.3, must lie in [0, 1.2]; percent",
-        ),
-        (
-            "measured",
-            {"source": "x", "speeds": ["1 m/s"], "e_n": []},
-            "measured: speeds: 1, e_n: 0; give one e_n for each",
-        ),
-        ("materials.steel.young_modulus", "-1 GPa", "must lie in (0, inf) Pa"),
-        ("materials.steel.young_modulus", float("nan"), "expected a quantity with a unit"),
-        ("materials.steel.poisson_ratio", float("nan"), "not a finite number"),
-        ("materials.steel.colour", "blue", "unknown key"),
-        ("materials.rigid", STEEL["materials"]["steel"], "kept for a rigid target"),
-        ("materials.steel.yield_stress", KeyError, "yield_stress"),
-        ("impact.body.radius", "0 m", "must lie in (0, inf) m"),
-        ("impact.body.material", "brass", "add [materials.brass]"),
-        ("impact.target.radius", "1 m", "must not have a radius"),
-        ("impact.kind", "sphere-cube", "sphere-wall"),
-        ("impact.speeds", ["1 m/s", "fast"], "impact.speeds.1"),
-        ("impact.speeds", [], "impact.speeds is empty; give at least one value"),
-        ("impact.speeds.count", 10**9, "must be at most 1000"),
-        ("impact.speeds.to", "1 mm/s", "must exceed 'from'"),
-        ("impact.speeds.count", 1000, "at most 4096"),
-        ("numerics.phases", 65, "must be at most 64"),
-        ("numerics.steps_in_contact", 10**7, "must be at most 100000"),
-        ("numerics.steps_in_contact", 100.5, "must be a whole number"),
-        ("case.title", "a title & ", "swallow the next line"),
-        ("case.title", "two\nlines", "one printable line"),
-        ("case.source", "bell \a", "one printable line"),
-        ("case.name", "../../etc", "a-z, A-Z, 0-9"),
-        ("case.name", "größe", "of the characters a-z, A-Z, 0-9, - and _, the first of them not -"),
-        ("case.name", "-rf", "case.name = '-rf', must be 1 to 64 of the characters a-z, A-Z, 0-9, - and _"),
-        ("case.name", "n" * 1000, f"case.name = '{'n' * 76}..., must be"),
-        ("materials.steel.young_modulus", "1 " + "G" * 200, "young_modulus = '1 GGG"),
-        ("impact.speeds", "1 m/s", "impact.speeds = '1 m/s', must be a list; write it in [ ]"),
-        ("materials.steel.two\nlines", 1, "materials.steel.'two\\nlines' = 1, unknown key"),
-        ("case", KeyError, "case is missing"),
-        ("law.name", "hook", "there are hertz, thornton"),
-        ("law.stiffness", 1.0, "has no such parameter; it has yield_pressure, yield_pressure_ratio"),
-        ("law.yield_pressure", "1 GPa", "keep one"),
-        ("law.yield_pressure_ratio", -1.0, "must be > 0"),
-        ("law", {"name": "cavity", "first_yield_ratio": 1.0}, "law.first_yield_ratio = 1"),
-        ("impact.body.radius", "1e-200 m", "must lie in [1e-12, 1e+06] m"),
-        ("impact.speeds.from", "1e-120 m/s", "must lie in [1e-30, 1e+12] m/s"),
-        ("materials.steel.young_modulus", "1e200 Pa", "must lie in [1e-09, 1e+30] Pa"),
-        ("law.yield_pressure_ratio", 1e200, "law.yield_pressure = 1e+209"),
-        ("impact.body.material", "rigid", "only the target can be rigid"),
-        ("impact.body", 3, "must be a table"),
-        ("check.e_n", 0, "must lie in (0, inf)"),
-    ],
-)
-def test_a_mistake_is_named_with_place_value_and_limit(place, value, says):
-    with pytest.raises(CaseError) as caught:
-        experiment(parse(changed(place, value), "f.toml"))
-    assert says in str(caught.value)
-
-
 def paths_in(data, keys=()):
     """Every key of nested tables and lists."""
     for key, value in data.items() if isinstance(data, dict) else enumerate(data):
@@ -203,23 +125,6 @@ def test_a_file_of_the_other_kind_is_named_as_such():
         scene.parse(STEEL, "f")
     with pytest.raises(CaseError, match=r"^f: both \[impact\] and \[scene\]"):
         parse(STEEL | {"scene": {}}, "f")
-
-
-@pytest.mark.parametrize(
-    ("radius", "says"),
-    [
-        ("1 kg", "scene.particles.0.radius = '1 kg', the unit 'kg' has the wrong dimension"),
-        ({"from": "1 mm", "to": "2 mm", "classes": 1}, "scene.particles.0.radius.classes = 1, must be at least 2"),
-        ({"from": "2 mm", "to": "1 mm"}, "scene.particles.0.radius: 'to' (0.001 m) must exceed 'from' (0.002 m)"),
-        ({"from": "2 mm"}, "scene.particles.0.radius.to is missing; add it"),
-    ],
-)
-def test_of_two_readings_of_a_value_the_message_takes_the_one_that_is_meant(radius, says):
-    data = read_toml(CASES / "settle_glass.toml")
-    data["scene"]["particles"][0]["radius"] = radius
-    with pytest.raises(CaseError) as caught:
-        scene.parse(data, "f.toml")
-    assert str(caught.value).startswith("f.toml: " + says)
 
 
 def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
@@ -268,7 +173,8 @@ def test_another_law_drops_the_parameters_of_the_first():
 
 
 def test_the_softer_body_gives_the_strength_of_the_pair():
-    data = changed("materials.brass", dict(STEEL["materials"]["steel"], yield_stress="200 MPa"))
+    data = copy.deepcopy(STEEL)
+    data["materials"]["brass"] = STEEL["materials"]["steel"] | {"yield_stress": "200 MPa"}
     data["impact"]["target"]["material"] = "brass"
     x = experiment(parse(data, "f"))
     assert x.law.strengths == (2.8e9, 2.8 * 200e6) and x.law.parameters["yield_pressure"] == 2.8 * 200e6

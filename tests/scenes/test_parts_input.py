@@ -24,7 +24,6 @@ from epdem.studies.soften import soften
 from epdem.studies.sweep import run as study
 
 STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
-PLATE = {"name": "w", "kind": "plate", "axis": "z", "center": ["0 m"] * 3, "size": ["1 m"] * 2, "material": "steel"}
 BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
 
 
@@ -170,32 +169,6 @@ def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
     mesh = plan(parse(parts(wall=[wall]), tmp_path / "case.toml")).triangles["bowl"]
     corners = {tuple(float(x) for x in np.round(c * 1e3, 9) + 0.0) for c in mesh.reshape(-1, 3)}
     assert corners == {(1, 0, 2), (1, 5, 2), (-4, 0, 2), (1, 0, 7)}  # x goes to y, y to -x
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"wall": [FLOOR, FLOOR]}, "two parts of wall have the name 'floor'"),
-        ({"wall": [FLOOR | {"kind": "sphere"}]}, "scene.wall.0.kind = 'sphere', must be one of"),
-        ({"wall": [FLOOR | {"phases": ["pour"]}]}, "wall.floor.phases = 'pour' is no phase; there are fall"),
-        ({"wall": [FLOOR | {"material": "wood"}]}, r"scene.wall.floor.material = 'wood' is not defined"),
-        ({"fill": [BED | {"mass": "1 g"}]}, "scene.fill.0: give one of count, mass and fraction"),
-        ({"fill": [BED | {"count": 4000}]}, "scene.fill.bed = 4000: the spheres would fill"),
-        ({"fill": [BED | {"rate": "1 Hz"}]}, "fill.bed.rate = 1 Hz: 40 spheres take longer than phase fall"),
-        ({"fill": [], "body": []}, r"no spheres; add \[\[scene.fill\]\]"),
-        ({"fill": [{"name": "a", "file": "none.csv"}]}, "scene.fill.0.file = 'none.csv', no such file"),
-        ({"fill": [{"name": "a", "file": "s.csv", "material": "glass"}]}, "line 3: radius = 'big' is not a number"),
-        ({"body": [BODY | {"position": ["0 mm", "0 mm", "1 m"]}]}, "lies beyond scene.room"),
-        ({"body": [BODY | {"frozen": True, "phase": "fall"}]}, "a frozen body is there from the start"),
-        ({"phase": []}, "scene.phase is empty"),
-        ({"wall": [PLATE]}, "scene.wall.w: reaches beyond scene.room"),
-    ],
-)
-def test_unknown_and_contradictory_parts_are_refused_in_one_sentence(change, words, tmp_path):
-    (tmp_path / "s.csv").write_text("x,y,z,radius\n0,0,0,0.001\n0,0,0,big\n")
-    with pytest.raises(CaseError, match=words) as error:
-        plan(parse(parts(**change), tmp_path / "case.toml"))
-    assert "\n" not in str(error.value)
 
 
 def test_the_example_of_the_page_is_a_scene():
