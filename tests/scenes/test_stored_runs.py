@@ -4,6 +4,7 @@
 import itertools
 import math
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,8 @@ from epdem.engines.frames import Frames
 from epdem.engines.liggghts import tables as scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
-from epdem.scenes.columns import NORMAL, STRAINS, UNITS, columns_of_rows, units
+from epdem.scenes.columns import NORMAL, UNITS, columns_of_rows, units
+from epdem.scenes.quantities import STRAINS, page
 
 
 @pytest.fixture(scope="module", params=RUNS)
@@ -151,6 +153,10 @@ def test_the_energy_balance_adds_up(stored):
     assert verdicts["energy_residual"] == (checks.closure(table) <= 0.01)
     if not p.scene.open_boundary:
         assert verdicts["spheres_in_room"]
+
+
+def test_the_page_has_the_table_of_quantities():
+    assert page() in (Path(__file__).parents[2] / "docs/results.md").read_text()
 
 
 def test_every_column_has_a_unit_unless_it_is_a_name_or_a_count(stored):

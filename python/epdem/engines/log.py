@@ -11,19 +11,13 @@ import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
-from ..scenes import columns
+from ..scenes import columns, quantities
 from ..scenes.plan import NO_VOID, NOT_REACHED, ScenePlan
 
 _LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
 _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d+)$")
 # thermo words of the deck and their columns; for the loads of walls see `_column`
-ROWS = {
-    "Atoms": "particles",
-    "KinEng": "kinetic_energy",
-    "power": "wall_power",
-    "ratio[1]": columns.STRAINS[0],
-    "ratio[2]": columns.STRAINS[1],
-}
+ROWS = {x.words["thermo"]: name for name, x in quantities.ROWS.items() if "thermo" in x.words}
 _LOAD, _WAY = re.compile(r"load(\d+)\[(\d)\]"), re.compile(r"(?:v_)?way(\d+)")
 _TOTAL = re.compile(r" - a total of (\d+) particle templates ")
 

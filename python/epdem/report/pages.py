@@ -19,8 +19,9 @@ from ..impacts.prediction_report import yielding
 from ..impacts.run import Outcome
 from ..impacts.summary import against_measured, largest_errors
 from ..laws.strengths import find_law
-from ..scenes.columns import STRAINS, units
+from ..scenes.columns import units
 from ..scenes.plan import ScenePlan
+from ..scenes.quantities import STRAINS
 from ..scenes.run import SceneOutcome
 from ..scenes.stages import against_measured as against_measured_densities
 from ..scenes.summary import FIRST, checked, results, stages_shown

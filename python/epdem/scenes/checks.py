@@ -15,6 +15,7 @@ from ..laws.strengths import ADHESION
 from .columns import last_frame
 from .model import pair_law
 from .plan import ScenePlan
+from .quantities import WORKS
 from .timestep import impact
 
 
@@ -39,14 +40,6 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     return np.cumsum(rows["wall_power"].to_numpy() * np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0))
 
 
-WORKS = {  # terms of the balance by the columns of the frames
-    "plastic": "plastic_work",
-    "adhesion": "adhesive_work",
-    "friction": "friction_work",
-    "springs": "friction_energy",
-}
-
-
 def _lost_energy(spheres: pd.DataFrame, energy: pd.Series, steps: np.ndarray) -> np.ndarray:
     """Energy [J] of the spheres that left before each step, in their last frame."""
     at_last = spheres.assign(energy=energy).sort_values("step").groupby("id")[["step", "energy"]].last()
@@ -68,7 +61,9 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
     """
     spheres, contacts, rows = tables["particles"], tables["contacts"], tables["rows"]
     own = {"kinetic": kinetic(spheres)} | ({"rotation": rotation(spheres)} if p.model.spins else {})
-    own |= {"plastic": 0.0 * spheres["mass"]} | {k: spheres[name] for k, name in WORKS.items() if name in spheres}
+    own |= {"plastic": 0.0 * spheres["mass"]} | {
+        work.term: spheres[name] for name, work in WORKS.items() if name in spheres
+    }
     gravity = spheres["mass"] * p.scene.gravity * spheres["z"]
     terms = pd.DataFrame(own | {"gravity": gravity}).groupby(spheres["step"]).sum()
     steps = terms.index.to_numpy()

@@ -17,32 +17,28 @@ from ..laws.strengths import LawSpec
 from ..theory.adhesion import plastic_work
 from ..theory.backbones import JKR
 from ..theory.numerics import gauss
+from . import quantities
 from .model import pair_law
 from .plan import ScenePlan
+from .quantities import PARTICLES, ROWS, SPINS, STRAINS
 
 Array = npt.NDArray[np.float64]
-UNITS = {  # of the columns that have one
+UNITS = quantities.UNITS | {  # of the columns that have one
     column: unit
     for unit, columns in {
-        "s": "time begin_time end_time",
-        "m": "x y z radius overlap added_overlap contact_radius delta_max residual_overlap dent_radius wear height",
+        "s": "begin_time end_time",
+        "m": "overlap added_overlap contact_radius delta_max residual_overlap dent_radius wear height",
         "m^2": "area",
-        "m/s": "vx vy vz speed",
-        "rad/s": "omega_x omega_y omega_z",
-        "kg": "mass",
+        "m/s": "speed",
         "N": "force force_x force_y force_z",
         "Pa": "normal_stress shear_stress pressure asked reached peak opposite_pressure radial_pressure",
-        "W": "wall_power",
-        "J": "kinetic_energy energy plastic_work adhesive_work friction_work friction_energy elastic_energy "
-        "kinetic rotation gravity elastic plastic adhesion friction springs work lost_spheres_energy balance",
+        "J": "energy elastic_energy kinetic rotation gravity elastic plastic adhesion friction springs work "
+        "lost_spheres_energy balance",
     }.items()
     for column in columns.split()
 }
 LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]
-STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # w a/R* and w delta/R*, of all contacts since the start
-PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
-SPINS = ["omega_x", "omega_y", "omega_z"]
 
 
 def last_frame(table: pd.DataFrame) -> pd.DataFrame:
@@ -70,12 +66,12 @@ def columns_of_rows(p: ScenePlan) -> set[str]:
     """The names of the columns that the rows of a scene have."""
     loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
     named = {row.name for row in p.scene.row} | {*p.way_columns}
-    return {"step", "time", "particles", "kinetic_energy", *STRAINS, *p.row_columns, *named, *loads}
+    return {*ROWS, *named, *loads} - ({"wall_power"} - {*p.row_columns})
 
 
 def columns_of_frames(p: ScenePlan) -> list[str]:
     """The names of the columns that the frames of a scene have beside the step."""
-    return [*PARTICLES, *(SPINS if p.model.spins else []), *p.works]
+    return [*PARTICLES, *(SPINS if p.model.spins else ()), *p.works]
 
 
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:

@@ -35,6 +35,7 @@ from .limits import (
     refuse_walls_at_faces,
 )
 from .model import Model, model
+from .quantities import WORKS
 from .timestep import time_step, unstable_steps
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
@@ -382,9 +383,7 @@ class ScenePlan:
     @property
     def works(self) -> tuple[str, ...]:
         """The works and energies of each sphere in the frames."""
-        yields, adheres, slips = self.model.yields, self.model.adheres, self.model.nodes > 0
-        there = {"plastic_work": yields, "adhesive_work": adheres, "friction_work": slips, "friction_energy": slips}
-        return tuple(name for name, present in there.items() if present and self.output.energy)
+        return tuple(name for name, work in WORKS.items() if self.output.energy and work.of(self.model))
 
     @property
     def driven(self) -> list[str]:

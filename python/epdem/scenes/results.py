@@ -20,9 +20,10 @@ from ..base.tables import write_array, write_attributes
 from ..case.motions import FloatArray
 from ..jobs.stage import Tables
 from . import meshes
-from .columns import FORCE, NORMAL, SPINS, bodies, columns_of_rows, units
+from .columns import FORCE, NORMAL, bodies, columns_of_rows, units
 from .meshes import at_end
 from .plan import ScenePlan
+from .quantities import SPINS
 
 ENGINE_TABLES = ("rows", "particles", "contacts", "walls", "phases")
 FILES = "files"  # group of the files that the case names
@@ -94,7 +95,7 @@ def engine_tables(p: ScenePlan, tables: Tables) -> Tables:
 
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK's order in CellOffsets
 NAMES = {"id": "body_id", "type": "material_id"}
-VECTORS = {"velocity": ["vx", "vy", "vz"], "angular_velocity": SPINS}
+VECTORS = {"velocity": ["vx", "vy", "vz"], "angular_velocity": [*SPINS]}
 OTHERS = {"step", "x", "y", "z", "wall", "triangle"}  # columns that the geometry states
 
 

@@ -15,10 +15,11 @@ from ..theory import validity
 from ..theory.timestep import LOOSE
 from . import filling, servo, stages
 from .checks import AT_REST, flow_warnings
-from .columns import STRAINS, bodies, last_frame, reduced
+from .columns import bodies, last_frame, reduced
 from .limits import dense_beds, depths, largest_density, overlaps
 from .meshes import sheet
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
+from .quantities import STRAINS
 from .timestep import unstable_steps
 
 SIDES = 24  # of the prism that stands for a round region

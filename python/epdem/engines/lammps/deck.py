@@ -11,7 +11,7 @@ import numpy as np
 from ...base import rendering as decks
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
-from ...scenes import placement
+from ...scenes import placement, quantities
 from ...scenes.columns import columns_of_frames
 from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
@@ -21,13 +21,6 @@ from . import words
 from .scene_walls import DeckWall, force, height, meshes, motions, plane, power, restart_commands, stop_commands, way
 
 ROLLING = ("cdt", "epsd2")
-WORKS = {  # what dumps call the works and energies of a sphere
-    "plastic_work": "f_EP_HISTORY0[1]",
-    "adhesive_work": "f_EP_HISTORY0[6]",
-    "friction_work": "f_EP_HISTORY0[4]",
-    "friction_energy": "f_EP_HISTORY0[5]",
-}
-
 PATH, END = "path.txt", "end.txt"  # dumps of impacts
 
 
@@ -157,7 +150,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         phases=tuple(_phases(p)),
         contact_walls=tuple(decks.wall_id(w) for w in contact_walls(p)),
         row_words=("f_ratio[1]", "f_ratio[2]", *row_words(p)),
-        columns=tuple(WORKS.get(name, name.replace("_", "")) for name in columns_of_frames(p)),
+        columns=quantities.words("lammps", columns_of_frames(p)),
     )
 
 

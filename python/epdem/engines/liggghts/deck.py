@@ -12,9 +12,11 @@ from ...base.declarations import declarations
 from ...errors import CaseError
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
+from ...scenes import quantities
 from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
+from ...scenes.quantities import PARTICLES, SPINS
 from ..host import refuse_narrow
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
@@ -22,12 +24,6 @@ from .properties import HARD, SOFT, Property, of_model, tangential, wear
 from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes
 from .scene_parts import data as data_files
 
-WORKS = {  # what dumps call the works and energies of a sphere
-    "plastic_work": "f_plasticWork",
-    "adhesive_work": "f_adhesiveWork",
-    "friction_work": "f_frictionWork",
-    "friction_energy": "f_frictionEnergy",
-}
 PATH = "path.bin"  # dump of impacts
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 LEAST_SPAN = 1e-4  # of all coordinates of a mesh [m]
@@ -173,6 +169,7 @@ class SceneDeck:
     insertions: tuple[InsertFix, ...]
     phases: tuple[DeckPhase, ...]
     open: bool
+    particle_words: tuple[str, ...]
     work_words: tuple[str, ...]
     history: dict[str, int]
     wall_history: dict[str, int]
@@ -211,7 +208,8 @@ def deck(p: ScenePlan) -> SceneDeck:
         insertions=insertions(p),
         phases=commands,
         open=p.ends_early or any(phase.speeds for phase in commands),
-        work_words=tuple(WORKS[name] for name in p.works),
+        particle_words=quantities.words("liggghts", [*PARTICLES, *(SPINS if p.model.spins else ())]),
+        work_words=quantities.words("liggghts", p.works),
         history=history(m),
         wall_history=history(m, wall=True),
         contact_columns=contact_columns(history(m).values(), memory(m)),

@@ -14,7 +14,7 @@ from ...errors import EngineError
 from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
-from ...scenes import columns
+from ...scenes import columns, quantities
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..frames import Frames, Kinds
@@ -90,7 +90,7 @@ def _formulas(p: ScenePlan) -> dict[str, PlaneWall | CylinderWall]:
 
 
 def _particle_names(p: ScenePlan) -> list[str]:
-    names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
+    names = [*quantities.PARTICLES, *(quantities.SPINS if p.model.spins else ())]
     values = [*history(p.model), *columns.FORCE]
     names += [f"{value}_{name}" for name in _formulas(p) for value in values] if p.contacts else []
     return [*names, *p.works]

@@ -11,6 +11,7 @@ from ...base import rendering as decks
 from ...impacts.plan import Group, Plan, side_by_side
 from ...scenes import placement
 from ...scenes.plan import PhaseSteps, ScenePlan
+from ...scenes.quantities import WORKS
 from ..host import refuse, refuse_narrow
 from .classes import ContactClasses, functors, materials
 from .scene_parts import (
@@ -32,7 +33,6 @@ from .scene_parts import (
 from .scene_parts import files as files_of_parts
 
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
-WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
 ENLARGED = 1.25  # bounds of spheres that grow
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 
@@ -170,7 +170,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         phases=phases,
         motions=tuple(motion for phase in phases for motion in phase.motions),
         sampling=1 if every_step else p.sampling if p.measured_walls else p.every,
-        works=tuple(WORKS[name] for name in p.works if name in WORKS),
+        works=tuple(WORKS[name].words["yade"] for name in p.works if "yade" in WORKS[name].words),
         loads=tuple(loads(p)),
     )
 
