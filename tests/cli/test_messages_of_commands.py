@@ -14,6 +14,13 @@ SENTENCES = {
     ("run", "scene.toml", "-e", "embedded"): "--engine embedded: a scene runs on liggghts or yade",
     ("run", "steel.toml", "-e", "embedded", "--format", "gif"): "--format gif: not one of png, svg, pdf; choose one of",
     ("run", "steel.toml", "-e", "embedded", "-o", "mine"): "a.txt was there before; the folder is not ours; choose",
+    ("run", "steel.toml", "-e", "embedded", "-o", "own.j2"): "own.j2",
+    ("run", "steel.toml", "-e", "embedded", "-o", "/proc/here"): "/proc/here",
+    ("run", "steel.toml", "-e", "liggghts-thornton_ning"): "'epdem verify crosscheck' runs models",
+    ("run", "steel.toml", "-e", "embedded", "--ranks", "2"): "leave it out",
+    ("deck", "steel.toml", "-e", "embedded", "-o", "d"): "reads no deck",
+    ("deck", "steel.toml", "-l", "hertz", "-l", "cavity", "-o", "d"): "one deck for each",
+    ("run", "many.toml", "-e", "embedded", "--steps", "100000"): "samples, at most",
     ("predict", "steel.toml", "-l", "jkr"): "law jkr needs law.work_of_adhesion (of all pairs), or",
     ("predict", "--speed", "0 m/s"): "impact.speeds.0 = '0 m/s', must lie in (0, inf)",
     ("predict", "--radius", "3 kg"): "impact.body.radius = '3 kg', the unit 'kg' has the wrong dimension",
@@ -50,6 +57,7 @@ def test_a_command_says_it_in_one_sentence(words, tmp_path, capsys, monkeypatch)
     monkeypatch.chdir(tmp_path)
     steel = (CASES / "steel_wall.toml").read_text()
     Path("steel.toml").write_text(steel)
+    Path("many.toml").write_text(steel.replace("count = 32", "count = 512"))
     Path("hertz.toml").write_text(re.sub(r'"thornton"\n.*', '"hertz"', steel))
     Path("scene.toml").write_text((CASES / "settle_glass.toml").read_text())
     Path("points.csv").write_text("impact.body.radius\n3 mm\n")
@@ -57,4 +65,5 @@ def test_a_command_says_it_in_one_sentence(words, tmp_path, capsys, monkeypatch)
     Path("mine").mkdir()
     Path("mine/a.txt").write_text("of the user")
     done = call(words, capsys, monkeypatch)
-    assert done.code == 2 and SENTENCES[words] in done.err and done.err.count("\n") == 1, done.err
+    assert done.code == 2 and SENTENCES[words] in done.err, done.err
+    assert done.err.startswith("epdem: ") and done.err.count("\n") == 1

@@ -138,30 +138,6 @@ def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
 
 
-COMMANDS = {
-    "a folder that is a file": (("run", "-e", "embedded", "-o", "taken"), "taken"),
-    "a folder nobody can make": (("run", "-e", "embedded", "-o", "/proc/here"), "/proc/here"),
-    "a model of another code": (("run", "-e", "liggghts-thornton_ning"), "'epdem verify crosscheck' runs models"),
-    "ranks of an engine that has one": (("run", "-e", "embedded", "--ranks", "2"), "leave it out"),
-    "a deck of an engine without decks": (("deck", "-e", "embedded", "-o", "d"), "reads no deck"),
-    "two laws in one deck": (("deck", "-l", "hertz", "-l", "cavity", "-o", "d"), "one deck for each"),
-    "too many samples": (("run", "-e", "embedded", "--steps", "100000"), "samples, at most"),
-}
-
-
-@pytest.mark.parametrize("mistake", COMMANDS)
-def test_a_mistake_on_the_command_line_exits_with_2_and_one_sentence(mistake, tmp_path):
-    (command, *options), says = COMMANDS[mistake]
-    (tmp_path / "taken").write_text("")
-    case = tmp_path / "case.toml"
-    case.write_text((CASES / "steel_wall.toml").read_text().replace("count = 32", "count = 512"))
-    done = subprocess.run(
-        [sys.executable, "-m", "epdem", command, str(case), *options], cwd=tmp_path, capture_output=True, text=True
-    )
-    assert done.returncode == 2 and says in done.stderr, done.stderr
-    assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1
-
-
 def test_another_law_drops_the_parameters_of_the_first():
     x = experiment(parse(STEEL, "f"), "cavity")
     assert x.law.parameters == {

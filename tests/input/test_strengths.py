@@ -118,38 +118,6 @@ def test_materials_of_scenes_have_these_keys_and_the_materials_file_gives_way():
     assert strengths(scene.parse(data))["glass"] == pytest.approx(5e9, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("material", "law", "words"),
-    [
-        ({"hardness": "1 GPa", "yield_ratio": 1e-3}, {}, "both hardness and yield_ratio are given, each the strength"),
-        ({"hardness": "1 GPa", "yield_stress": "1 GPa"}, {}, "both yield_stress and hardness are given"),
-        ({"hardness": "1 GPa", "yield_pressure": "1 GPa"}, {}, "both hardness and yield_pressure are given"),
-        (
-            {"hardness": "1 GPa"},
-            {"yield_pressure": "1 GPa"},
-            "both law.yield_pressure and materials.glass.hardness are",
-        ),
-        ({"hardness": "180"}, {}, "materials.glass.hardness = '180', '180' has no unit"),
-        ({"hardness": "180 HB"}, {}, "materials.glass.hardness = '180 HB', unknown unit 'HB'"),
-        ({"hardness": "-180 HV"}, {}, "must lie in (0, inf) Pa"),
-        ({"yield_ratio": 0.2}, {}, "materials.glass.yield_ratio = 0.2, must lie in (0, 0.1]; percent?"),
-    ],
-)
-def test_one_strength_is_given(material, law, words):
-    data = read_toml(CASES / "settle_glass.toml")
-    del data["materials"]["glass"]["yield_stress"]
-    data["materials"]["glass"] |= material
-    data["law"] = {"name": "thornton"} | law
-    with pytest.raises(CaseError) as caught:
-        strengths(scene.parse(data, "case.toml"))
-    assert words in str(caught.value)
-
-
-def test_a_hardness_above_that_of_an_elastic_body_names_key_and_units():
-    with pytest.raises(CaseError, match=r"materials.steel.hardness: its mean pressure 5e\+10 Pa must lie between"):
-        strength_of({"hardness": "50 GPa"}, "thornton")
-
-
 def test_a_sweep_sets_a_hardness_in_place_of_the_yield_stress():
     data = read_toml(STEEL)
     keys = keys_of(data)

@@ -131,7 +131,7 @@ HELD = {"kind": "press", "direction": [0, 0, 1], "force": "50 mN", "highest_spee
     ("engine", "moves"),
     [
         pytest.param("liggghts", (DOWN, SLOWER, SLOWER), marks=pytest.mark.liggghts),
-        pytest.param("lammps", (DOWN, SLOWER, SLOWER), marks=needs_lammps),
+        pytest.param("lammps", (DOWN, SLOWER, SLOWER), marks=[needs_lammps, pytest.mark.thorough]),
         pytest.param("lammps", (HELD, HELD), marks=needs_lammps, id="lammps-press"),
     ],
 )

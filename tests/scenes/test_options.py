@@ -72,24 +72,6 @@ def test_the_walls_keep_their_material_whatever_the_order_of_types():
     assert strength.values[0] < strength.values[1]
 
 
-@pytest.mark.parametrize(
-    ("place", "value", "words"),
-    [
-        (("scene", "count"), 100_000, "enlarge the room"),
-        (("scene", "kind"), "sieve", "must be one of"),
-        (("scene", "walls"), "cheese", "add \\[materials.cheese\\]"),
-        (("scene", "box"), ["1 mm", "1 mm", "1 s"], "dimension"),
-        (("contact", "wall_friction"), -0.1, "must lie in"),
-        (("output", "pictures"), True, "pictures"),
-    ],
-)
-def test_mistakes_are_named_before_anything_runs(place, value, words):
-    data = read_toml(CASES / "settle_glass.toml")
-    data[place[0]] = data[place[0]] | {place[1]: value}
-    with pytest.raises(CaseError, match=words):
-        plan(parse(data, "case.toml"))
-
-
 @pytest.mark.liggghts
 def test_the_command_takes_its_own_folder_again_and_its_figures_are_no_files_of_the_user(tmp_path):
     """Twice the same call, a fresh one, and one that is forced to take a folder with a file of the user's."""

@@ -263,30 +263,6 @@ def test_a_bed_of_many_radii_makes_one_law_for_each_pair_of_materials(law, monke
     assert found == pytest.approx(expected, rel=1e-9) and len(made) == 1
 
 
-@pytest.mark.parametrize(
-    ("m", "output", "words"),
-    [
-        ({"kind": "force", "wall": "roof"}, {}, "measure.a.wall = 'roof': walls whose forces are known: floor"),
-        ({"kind": "torque", "wall": "floor"}, {}, "a plane has no torque"),
-        ({"kind": "count", "material": "steel"}, {}, "material = 'steel': no sphere is of it"),
-        ({"kind": "plastic_work"}, {"energy": False}, "is known with output.energy"),
-        ({"kind": "impact_speed"}, {"energy": False}, "give output.contacts"),
-        ({"kind": "count"}, {"particles": 0, "energy": False}, "measures are taken from frames"),
-        ({"kind": "count", "name": "time"}, {}, "measure.time: a column of the rows has this name"),
-        (
-            {"kind": "porosity", "region": ROOM | {"x": ["0 mm", "20 mm"]}},
-            {},
-            r"a.region: it reaches beyond the room of the scene, \[-0.01, 0.01\] x .*, whose outside would count",
-        ),
-        ({"kind": "count", "region": ROOM | {"x": ["11 mm", "20 mm"]}}, {}, "it lies outside of the room of the scene"),
-        ({"kind": "count", "name": "floor_force_z"}, {}, "a column of the rows has this name"),
-    ],
-)
-def test_a_measure_that_the_scene_cannot_give_is_refused(m, output, words):
-    with pytest.raises(CaseError, match=words):
-        measures.refuse_measures(planned({"name": "a"} | m, **output))
-
-
 @pytest.mark.liggghts
 def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, capsys):
     wanted = [

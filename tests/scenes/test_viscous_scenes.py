@@ -10,7 +10,6 @@ from scene_runs import run
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines.liggghts.deck import files
-from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.scenes.timestep import time_step
 from stored_decks import reasons
@@ -42,19 +41,6 @@ def test_a_scene_has_the_dashpot_in_pair_and_walls_only_if_it_asks():
 def test_a_dashpot_along_the_normal_does_not_bring_one_along_the_tangent():
     assert "tangential_damping off" in setup_of(beads(0.7, friction=0.3))
     assert "tangential_damping" not in setup_of(beads(0.7, friction=0.3, tangential_restitution=0.7))
-
-
-@pytest.mark.parametrize(
-    ("data", "words"),
-    [
-        (beads(0.1), r"viscous\.restitution = 0\.1.*\[0\.14, 1\]"),
-        (beads(0.7, friction=0.3, tangential_restitution=0.5), "one restitution for both dashpots"),
-        (beads() | {"viscous": {"damping": 0.1}}, "viscous"),
-    ],
-)
-def test_a_dashpot_that_liggghts_cannot_have_is_refused_before_anything_runs(data, words):
-    with pytest.raises(CaseError, match=words):
-        plan(parse(data, "case.toml"))
 
 
 def test_a_strong_dashpot_makes_the_step_smaller():
