@@ -14,7 +14,6 @@ from epdem.engines import log
 from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
-from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 
@@ -202,33 +201,6 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     assert {ends["settle"], ends["more"]} <= {*files}
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (
-            {"move": [{"wall": "floor", "kind": "vibrate", "amplitude": ["0 m"] * 3, "frequency": "1 Hz"}]},
-            "no wall of tri",
-        ),
-        ({"until": {"wall": "lid", "travel": "1 mm"}}, "wall 'lid' has no linear motion in this phase"),
-        (
-            {"until": {"count": 1, "kinetic_energy": "1 J"}},
-            "give one of kinetic_energy, count, force, force_below and travel",
-        ),
-        ({"until": {"force": "1 N"}}, "'wall' belongs to force, force_below and travel"),
-        ({"until": {"wall": "roof", "force": "1 N"}}, "phase.fall.until.wall = 'roof' is no wall"),
-        ({"until": {"count": 1, "after": "2 s"}}, "until.after must be below duration"),
-        ({"move": [{"wall": "lid", "kind": "spin"}]}, "scene.phase.0.move.0.kind = 'spin', must be one of"),
-        (
-            {"move": [{"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}]},
-            "scene.phase.fall.move: wall lid leaves scene.room, the centre of a triangle reaches z = 0.045 m",
-        ),
-    ],
-)
-def test_a_motion_or_an_end_that_cannot_be_is_refused(change, words):
-    with pytest.raises(CaseError, match=words):
-        plan(parse(parts(wall=[FLOOR, PLATE], phase=[FALL | change])))
-
-
 def test_a_motion_counts_for_the_highest_speed():
     move = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "3 mm", "4 mm"], "frequency": "100 Hz"}
     scene = parse(parts(wall=[PLATE], phase=[FALL | {"move": [move]}])).scene
@@ -255,8 +227,3 @@ def test_a_phase_that_is_not_recorded_has_rows_and_no_frames(tmp_path):
         assert not {f"particles.{k * every}.bin" for k in (3, 4, 5)} & {p.name for p in (place / "out").iterdir()}
         resume.write_resume(outcome.plan, place / "out", 4 * every)
         assert "dump_modify particles every 1000000000" in (place / "out/in.resume").read_text()
-
-
-def test_the_last_phase_is_recorded():
-    with pytest.raises(CaseError, match=r"phase.fall.record = false: the last phase is recorded"):
-        parse(parts(phase=[FALL | {"record": False}]))

@@ -135,31 +135,6 @@ def test_an_engine_that_is_not_here_says_how_to_get_it(case, tmp_path):
 STRENGTH = {"yield_pressure": "3 MPa"}
 
 
-@pytest.mark.parametrize(
-    ("table", "value", "words"),
-    [
-        (
-            "law",
-            {"name": "thornton", **STRENGTH, "yield_pressure_ratio": 2.5},
-            "both yield_pressure and yield_pressure_",
-        ),
-        (
-            "law",
-            {"name": "thornton", "yield_presure": "3 MPa"},
-            "law.yield_presure: law thornton has no such parameter",
-        ),
-        ("law", {"name": "thornton", "yield_pressure": "3 MJ"}, "law.yield_pressure = '3 MJ'"),
-        ("law", {"name": "thornten"}, "law.name = 'thornten' does not exist"),
-        ("scene", {"gravity": "0 m/s^2"}, r"scene.gravity = 0: nothing moves.*numerics.highest_speed"),
-    ],
-)
-def test_mistakes_are_named_in_the_words_of_the_case_file(table, value, words):
-    data = data_of("settle")
-    changed = value if table == "law" else data[table] | value
-    with pytest.raises(CaseError, match=words):
-        plan(parse(data | {table: changed} | {"numerics": {}}))
-
-
 def test_an_error_that_no_step_reaches_is_named_by_its_key():
     """A dashpot converges with first order, so that e_n within 1e-9 takes more steps than anyone runs."""
     data = data_of("settle") | {"viscous": {"restitution": 0.5}, "numerics": {"error": 1e-9}}
