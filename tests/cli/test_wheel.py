@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from engines.lammps_decks import needs_lammps
-from epdem.engines.liggghts import header
+from epdem.tools import header
 
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.packaging

@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 
 from epdem.cli.main import app
 from epdem.engines.liggghts import launcher
-from epdem.engines.liggghts.deck_checks import check
-from epdem.engines.liggghts.own_decks import convert
 from epdem.errors import CaseError
+from epdem.tools.convert import convert
+from epdem.tools.deck_checks import check
 
 DECK = """# model hertz in a comment, don't touch
 units si

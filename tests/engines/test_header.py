@@ -17,7 +17,6 @@ from plugin_loop import SAID, Scene, outcome
 
 from epdem.base import paths
 from epdem.case.impact import load
-from epdem.engines.liggghts import header
 from epdem.engines.liggghts import launcher as liggghts
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
@@ -25,6 +24,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.tools import header
 
 pytestmark = [pytest.mark.liggghts, pytest.mark.packaging]
 

@@ -10,7 +10,7 @@ import pytest
 from plugin_decks import good
 from tutorials import FOLDER, archive, rewritten, unpacked
 
-from epdem.engines.liggghts.own_decks import convert
+from epdem.tools.convert import convert
 
 pytestmark = pytest.mark.liggghts
 DOCS = Path(__file__).parents[2] / "docs"

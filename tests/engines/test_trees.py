@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem.engines.liggghts import header
+from epdem.tools import header
 
 SCRIPT = Path(__file__).parents[2] / "scripts/trees"
 AUTO = "H := \\#\nX := '\\#include <mpi.h> \\n \\#if defined(MPICH)'\n"

@@ -11,7 +11,7 @@ import pytest
 from plugin_decks import good
 from tutorials import STEPS, archive, decks, rewritten, unpacked
 
-from epdem.engines.liggghts.deck_checks import check
+from epdem.tools.deck_checks import check
 
 pytestmark = pytest.mark.liggghts
 SHORT = ["packing/in.packing", "heatTransfer_1/in.heatGran"]

@@ -20,13 +20,13 @@ from epdem.case import impact, scene
 from epdem.case.plausibility import case_warnings
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
-from epdem.engines.liggghts.own_decks import write
 from epdem.engines.yade import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import COLUMNS, predict
 from epdem.scenes.plan import plan as plan_scene
+from epdem.tools.own_decks import write
 from stored_decks import checked_deck
 
 FOREIGN = re.compile(r"Input should|should have|Field required|valid (number|string|list)|function-|pydantic|Traceback")

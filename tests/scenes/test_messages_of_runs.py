@@ -19,7 +19,7 @@ from epdem.engines import engine, log, scene_engine
 from epdem.engines.frames import Frames
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
-from epdem.engines.liggghts import dump, launcher, own_decks
+from epdem.engines.liggghts import dump, launcher
 from epdem.engines.liggghts import tables as scene_tables
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
@@ -33,6 +33,7 @@ from epdem.impacts.prediction import predict
 from epdem.jobs.stage import Inputs
 from epdem.scenes import columns, meshes, run
 from epdem.studies.sweep import slurm
+from epdem.tools import own_decks
 from epdem.verification.stability import variants
 from epdem.verification.stability.bench import Bench
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from epdem.base import paths
-from epdem.engines.liggghts.own_decks import settings, write
 from epdem.errors import CaseError
+from epdem.tools.own_decks import settings, write
 
 ROOT = Path(__file__).parents[2]
 SETTLE, STEEL = ROOT / "cases/settle_glass.toml", ROOT / "cases/steel_wall.toml"

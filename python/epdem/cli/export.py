@@ -25,7 +25,7 @@ def liggghts(
     as_json: AsJson = False,
 ) -> None:
     """Write the models as sources for a LIGGGHTS tree, or print what a tree lacks to be built with them."""
-    from ..engines.liggghts import header as sources
+    from ..tools import header as sources
 
     if out is None and check is None:
         raise CaseError("epdem export liggghts: name a folder by --out or --check")

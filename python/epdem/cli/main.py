@@ -157,7 +157,7 @@ def deck(
         refuse_options(file, "--check takes nothing but a LIGGGHTS deck", reasons=reasons, force=force)
         if engine != DEFAULT_ENGINE:
             raise CaseError(f"{file}: --check reads LIGGGHTS decks; leave out --engine")
-        from ..engines.liggghts.deck_checks import check_file
+        from ..tools.deck_checks import check_file
 
         found = check_file(file)
         raise answer({"warnings": found}, found or [f"{file}: nothing found"], as_json, not found)
@@ -169,9 +169,9 @@ def deck(
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
             )
-        from ..engines.liggghts.deck_checks import check_file
-        from ..engines.liggghts.own_decks import convert_file
         from ..studies.sweep.points import settings as values_of
+        from ..tools.convert import convert_file
+        from ..tools.deck_checks import check_file
 
         values = values_of(given or [], example="yieldPressure=1e8")
         files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
@@ -183,8 +183,8 @@ def deck(
         refuse_options(file, "the deck of an own template has the law of its case", law=law, reasons=reasons)
         if engine != DEFAULT_ENGINE:
             raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
-        from ..engines.liggghts.own_decks import settings
-        from ..engines.liggghts.own_decks import write as fill
+        from ..tools.own_decks import settings
+        from ..tools.own_decks import write as fill
 
         files = fill(file, case, settings(given or []), out, force=force)
         raise answer({"files": files}, map(str, files), as_json)

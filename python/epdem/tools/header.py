@@ -4,9 +4,9 @@
 import re
 from pathlib import Path
 
-from ...base import __version__, paths
-from ...base.files import write_texts
-from ...errors import CaseError
+from ..base import __version__, paths
+from ..base.files import write_texts
+from ..errors import CaseError
 
 NAME = "normal_model_ep"
 PFM = "pfm"  # folder of the sources for LIGGGHTS-PFM, whose contact models have another interface

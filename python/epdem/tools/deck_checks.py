@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.declarations import declarations
-from ...case.toml import text_of
-from ...errors import CaseError
-from .own_decks import HYSTERESIS, commands, number, variable
+from ..base.declarations import declarations
+from ..case.toml import text_of
+from ..errors import CaseError
+from .convert import HYSTERESIS, commands, number, variable
 
 LARGEST_RATIO = 10.0  # of adhesion stiffness over loading stiffness; of materials below 1
 LARGEST_STRENGTH = 0.1  # of E*, above which contacts are elastic up to overlaps of 2.5 % of R* or more
