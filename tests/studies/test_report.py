@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem import api
+from epdem.cli import main
 from epdem.report import chart, page
 from epdem.report.impacts import charts as of_page
 from epdem.studies.sweep.run import SweepOutcome
@@ -34,10 +35,13 @@ HOSTILE = "</script><script>alert(1)</script> $x & <b>"
 
 
 def run(folder: Path, *more: str, code: int = 0) -> str:
-    """`epdem run` in a folder; its page."""
-    words = [Path(sys.executable).with_name("epdem"), "run", "steel.toml", "-o", "out", *more]
-    done = subprocess.run(list(map(str, words)), cwd=folder, capture_output=True, text=True)
-    assert done.returncode == code, done.stderr
+    """`epdem run` in a folder, in this process; its page."""
+    with pytest.MonkeyPatch.context() as here, pytest.raises(SystemExit) as ended:
+        here.chdir(folder)
+        here.setattr("sys.argv", ["epdem", "run", "steel.toml", "-o", "out", *more])
+        here.setattr("signal.signal", lambda *words: None)
+        main.main()
+    assert (ended.value.code or 0) == code
     return (folder / "out/report.html").read_text(encoding="utf-8")
 
 
@@ -256,7 +260,8 @@ def test_figures_need_no_backend(tmp_path, monkeypatch):
     """matplotlib's import fails if MPLBACKEND names an unknown one; a figure in a file is drawn all the same."""
     monkeypatch.setenv("MPLBACKEND", "nonsense")
     (tmp_path / "steel.toml").write_text(CASE.read_text())
-    run(tmp_path, "-e", "embedded")
+    words = [Path(sys.executable).with_name("epdem"), "run", "steel.toml", "-o", "out", "-e", "embedded"]
+    subprocess.run(words, cwd=tmp_path, check=True, capture_output=True)
     assert (tmp_path / "out/e_n.png").stat().st_size > 10_000
 
 
