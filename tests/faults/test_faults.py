@@ -38,11 +38,13 @@ def needs_an_engine(test: str) -> bool:
     return any(name in test.partition("[")[2] and not shutil.which(name) for name in ("liggghts", "yade"))
 
 
-def test_every_planted_fault_has_its_own_name_and_a_text_that_exists():
+def test_every_planted_fault_has_its_own_name_and_a_text_and_a_test_that_exist():
     everything = FAULTS + OF_LIBRARY + OF_PLUGIN + OF_LAMMPS + OF_YADE
     assert len(everything) >= 40 and len({fault.name for fault in everything}) == len(everything)
     for fault in everything:
         planted(fault, (ROOT / fault.file).read_text())
+        file, _, name = fault.test.partition("[")[0].partition("::")
+        assert f"def {name}(" in (ROOT / "tests" / file).read_text(), fault.test
 
 
 @pytest.mark.parametrize(
