@@ -15,6 +15,7 @@ from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
+from epdem.scenes.columns import place
 from epdem.scenes.limits import overlaps
 from epdem.scenes.meshes import at_end
 from epdem.scenes.plan import plan
@@ -224,3 +225,15 @@ def test_walls_at_the_end_are_where_their_motions_take_them(both, turns):
     for _ in turns:
         y, z = -z, y
     assert np.moveaxis(found["tube"], -1, 0) == pytest.approx(np.stack([x, y, z + 0.015]), abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["vibrate", "turn"])
+def test_a_row_has_the_place_of_a_wall_that_vibrates_or_turns_through_two_phases(name):
+    move = VIBRATE | {"amplitude": ["0.5 mm", "0 mm", "0 mm"]} if name == "vibrate" else SPIN | {"rate": "600 rpm"}
+    p = plan(parse(moved(one=move, two=move)))
+    times = np.linspace(0.0, p.phase_table["end_time"].iloc[-1], 40)
+    x, y, _ = p.triangles["plate"][0, 0]
+    turn = 2 * math.pi * (100 if name == "vibrate" else 10) * times
+    expected = x + 0.5e-3 * np.sin(turn) if name == "vibrate" else x * np.cos(turn) - y * np.sin(turn)
+    assert np.ptp(expected) > 9e-4
+    assert place(p, "plate", 0, times) == pytest.approx(expected, abs=1e-9)

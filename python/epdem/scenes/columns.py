@@ -119,12 +119,18 @@ def named_rows(p: ScenePlan, table: pd.DataFrame) -> pd.DataFrame:
 
 
 def place(p: ScenePlan, wall: str, axis: int, time: Array) -> Array:
-    """Coordinate [m] of a wall along an axis at times [s], each the middle of the interval that a force is the mean
-    of."""
-    found = np.full(len(time), p.triangles[wall][0, 0, axis])
+    """Coordinate [m] of the first corner of a wall along an axis at times [s], each the middle of the interval that a
+    force is the mean of; ways by a force, which no table has, are left out."""
+    here = np.tile(p.triangles[wall][0, 0], (len(time), 1))
+    before, began, so_far = None, here, np.zeros(len(time))
     for phase, seconds in zip(p.phases, p.lasted(time), strict=True):
-        found += phase.velocity(wall)[axis] * seconds
-    return found
+        move = phase.moves.get(wall)
+        goes_on = move == before and move is not None and math.isfinite(move.period)
+        began, so_far = (began, so_far + seconds) if goes_on else (here, seconds)
+        if move is not None and move.press is None:
+            here = move.point_at(so_far[:, None], began)
+        before = move
+    return here[:, axis]
 
 
 GROWTH = ["added_overlap", "screening"]  # that an engine gives with compaction
