@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // fix ID group-ID nve/sphere/ep and gravity/ep: LAMMPS's nve/sphere and gravity, whose bits they have, over rows of
-// spheres.
+// spheres; travel/ep: the travel of a wall whose speed a variable gives.
 #pragma once
+
+#include <string>
 
 #include "atom.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "input.h"
 #include "kernels/spheres.hpp"
 #include "update.h"
 #include "utils.h"
+#include "variable.h"
 #include "words.hpp"
 
 namespace epdem::lammps {
@@ -102,6 +106,40 @@ class FixGravity final : public LAMMPS_NS::Fix {
 
  private:
   double g_[3];
+};
+
+/// fix ID group-ID travel/ep SPEED TRAVEL: adds variable SPEED times the time step to the internal variable TRAVEL at
+/// the begin of each step, by the forces of the step before. LAMMPS's `controller` does so at the end of a step, so
+/// that the first evaluation of the next run finds the wall ahead of the spheres, and its first step finds the wall at
+/// rest.
+class FixTravel final : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char* style_name = "travel/ep";
+
+  FixTravel(LAMMPS_NS::LAMMPS* lmp, int count, char** word) : Fix(lmp, count, word) {
+    if (count != 5) error->all(FLERR, "fix travel/ep: the words are ID group travel/ep SPEED TRAVEL");
+    speed_ = word[3];
+    travel_ = word[4];
+  }
+
+  int setmask() override { return LAMMPS_NS::FixConst::INITIAL_INTEGRATE; }
+  void init() override {
+    const int speed = number_of(speed_), travel = number_of(travel_);
+    if (speed < 0 || !input->variable->equalstyle(speed) || travel < 0 || !input->variable->internalstyle(travel))
+      error->all(FLERR, "fix travel/ep: {} must be a variable of style equal, and {} of style internal", speed_,
+                 travel_);
+  }
+  void initial_integrate(int) override {
+    LAMMPS_NS::Variable& variables = *input->variable;
+    const int travel = number_of(travel_);
+    variables.internal_set(travel,
+                           variables.compute_equal(travel) + update->dt * variables.compute_equal(number_of(speed_)));
+  }
+
+ private:
+  int number_of(const std::string& name) const { return input->variable->find(name.c_str()); }
+
+  std::string speed_, travel_;
 };
 
 }  // namespace epdem::lammps

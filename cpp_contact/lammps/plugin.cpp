@@ -62,6 +62,7 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
         reinterpret_cast<void*>(&create_fix<FixHistory>));
   style("fix", FixMotion::style_name, "motion of spheres", reinterpret_cast<void*>(&create_fix<FixMotion>));
   style("fix", FixGravity::style_name, "gravity", reinterpret_cast<void*>(&create_fix<FixGravity>));
+  style("fix", FixTravel::style_name, "travel of walls", reinterpret_cast<void*>(&create_fix<FixTravel>));
   style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes",
         reinterpret_cast<void*>(&create_fix<FixWallPlanes>));
   style("fix", FixWallRegion::style_name, "elastic-plastic contacts with a region",

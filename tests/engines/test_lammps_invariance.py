@@ -237,6 +237,7 @@ def test_motion_and_gravity_have_the_bits_of_lammps_own(group, tmp_path):
         ("atomic", "nve/sphere/ep", "fix nve/sphere/ep needs atom_style sphere"),
         ("sphere", "gravity/ep 9.81", "fix gravity/ep: the words are ID group gravity/ep gx gy gz"),
         ("atomic", "gravity/ep 0 0 -9.81", "fix gravity/ep needs atom_style sphere"),
+        ("sphere", "travel/ep v", "fix travel/ep: the words are ID group travel/ep SPEED TRAVEL"),
     ],
 )
 def test_the_motion_refuses_words_and_points(style, words, sentence, tmp_path):

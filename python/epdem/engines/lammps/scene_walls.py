@@ -173,7 +173,7 @@ def _press(m: PressMove, id: str, dt: float) -> MotionWords:
     servo = (
         f"variable {id}_force equal {_force_times(id, m.direction)}",
         f"variable {id}_speed equal {press_speed(f'v_{id}_force', m)}",
-        f"fix press_{id} all controller 1 1 -1 0 0 v_{id}_speed 0 {id}_way",
+        f"fix press_{id} all travel/ep {id}_speed {id}_way",
     )
     return MotionWords(_along(m.direction, "T"), f"0.5*(f_{id}[7]+v_{id}_force*v_{id}_speed)", servo)
 
@@ -262,7 +262,7 @@ def _formulas(p: ScenePlan, name: str, number: int) -> Iterator[str]:
     yield from servo
     if _controlled(phase, name) and not servo:
         yield "variable share equal 1.0"
-        yield f"fix press_{id} all controller 1 1 -1 0 0 v_share 0 {id}_way"
+        yield f"fix press_{id} all travel/ep share {id}_way"
 
 
 def motions(p: ScenePlan, number: int) -> list[str]:
