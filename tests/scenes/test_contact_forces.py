@@ -127,6 +127,13 @@ def test_the_forces_on_each_sphere_at_rest_bear_its_weight_and_those_on_walls_ar
         assert -force[at].sum(axis=0) == pytest.approx(load, abs=1e-6 * max(weight.sum(), press)) and at.sum() >= least
 
 
+def test_the_press_reaches_its_force_beside_a_strong_dashpot(make_bed):
+    """The dashpots of a bed in the way of the lid are worth more than the force near which the lid slows."""
+    phase = make_bed(PRESSED)[1].phases.set_index("phase").loc["press"]
+    assert phase["until"] == "reached" and phase["end"] < 30000
+    assert phase["value"] == pytest.approx(PRESS, rel=5e-3)
+
+
 def test_normals_follow_from_geometry_and_the_normal_force_is_that_of_the_law(bed):
     spheres, contacts, force, normal = last(bed)
     assert np.linalg.norm(normal, axis=1) == pytest.approx(1.0, abs=1e-12)

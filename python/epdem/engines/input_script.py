@@ -15,7 +15,7 @@ from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
 from ..scenes.limits import TOUCH, PressedBed
 from ..scenes.model import Model, Type
-from ..scenes.plan import MISS, SLOWING, PhaseSteps, ScenePlan
+from ..scenes.plan import LAG, MISS, SLOWING, PhaseSteps, ScenePlan
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
@@ -114,10 +114,10 @@ class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
-    `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. kept: first step
-    here, of a phase or of a continued run, and its share, None: the host needs none. opposite: formula of the force on
-    the wall against a punch. stop: commands that bring the walls to rest. void: formula of the height of the void in a
-    pressed bed, which ends the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
+    `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. share: of their
+    speed, at the begin of a phase or of a continued run. opposite: formula of the force on the wall against a punch.
+    stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends
+    the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
     """
 
     first: int
@@ -130,7 +130,7 @@ class StopCondition:
     every: int = 0
     nears: bool = False
     missing: str = ""
-    kept: tuple[str, str] | None = None
+    share: str = "1.0"
     opposite: str = ""
     stop: tuple[str, ...] = ()
     gone: int = 0
@@ -139,6 +139,16 @@ class StopCondition:
     def steps(self) -> int:
         """At most, of the rows."""
         return self.rows * self.every
+
+    @property
+    def wanted(self) -> str:
+        """Formula of the share that walls come to have."""
+        return wanted_share("v_missing")
+
+    @property
+    def lag(self) -> int:
+        """Steps within which the share follows."""
+        return LAG
 
 
 def default_skin(p: ScenePlan) -> float:
@@ -179,6 +189,12 @@ def ended_at(run: PhaseSteps) -> list[str]:
     return [f"<= {high}"]
 
 
+def wanted_share(missing: str) -> str:
+    """Formula of the share of its speed that a wall comes to have. missing: name of the missing force over that at
+    which the wall slows."""
+    return f"({missing}<1)*({missing}>-1)*{missing}*(1-0.9*({missing}<0))+({missing}>=1)-0.1*({missing}<=-1)"
+
+
 BORNE = 0.05  # of the pressure of a stage, that the opposite wall bears at least
 LOOK = 100  # steps between two looks at a condition
 
@@ -189,14 +205,11 @@ def stop_condition(
     place: Callable[[PressedBed], str],
     force: Callable[[str, int], str],
     stop: Sequence[str] = (),
-    *,
-    before: Callable[[str, int], str] | None = None,
 ) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS: by its condition, or by a bed without void.
 
     None: it does not. place: formula of the height that a pressed bed has. force: word of a component of the force
     on a wall at a step. stop: commands that bring the walls of the phase to rest.
-    before: word of such a component, of a wall that slows, at the step before.
     """
     void = next((f"{place(bed)}-{number(bed.solid_height)}" for bed in p.pressed if bed.phase == run.name), "")
     until = run.case.condition
@@ -218,18 +231,16 @@ def stop_condition(
             axis = 1 + "xyz".index(next(w.axis for w in p.scene.wall if w.name == name and isinstance(w, PlateWall)))
             opposite = f"abs({force(stages.against, axis)})"
 
-        def on_wall(word: Callable[[str, int], str]) -> str:
-            squares = (f"{word(name, k)}*{word(name, k)}" for k in (1, 2, 3))
-            return f"abs({word(name, axis)})" if axis else f"sqrt({'+'.join(squares)})"
-
+        squares = (f"{force(name, k)}*{force(name, k)}" for k in (1, 2, 3))
+        on_wall = f"abs({force(name, axis)})" if axis else f"sqrt({'+'.join(squares)})"
         # a sphere that strikes the punch alone is no pressure
         borne = f"*({opposite}>={number(BORNE * until.limit)})" if opposite and until.force else ""
-        share, words = f"{on_wall(before or force)}/{number(until.limit)}", ended_at(run)
-        missing = f"({f'1-{share}' if until.force else f'{share}-1'})/{SLOWING}"
+        reached, words = f"{on_wall}/{number(until.limit)}", ended_at(run)
+        missing = f"({f'1-{reached}' if until.force else f'{reached}-1'})/{SLOWING}"
         return StopCondition(
             first=first,
             rows=(run.steps - first) // p.every,
-            formula=on_wall(force) + borne,
+            formula=on_wall + borne,
             condition=" && ".join(f"${{found}} {x}" for x in words),
             void=void,
             limit=until.limit,
@@ -237,7 +248,6 @@ def stop_condition(
             every=p.every,
             nears=run.slows is None,
             missing="" if run.slows is None else missing,
-            kept=("${now}+1", "1.0") if before else None,  # as in YADE: full speed in the first step
             opposite=opposite,
             stop=tuple(stop),
         )

@@ -73,9 +73,16 @@ def phase_at(p: ScenePlan, out: Path, step: int) -> tuple[int, int]:
     return number, max([0, *(ends[phase.name] for phase in p.phases[:number])])
 
 
-def later(stop: StopCondition | None, steps: int, every: int) -> StopCondition | None:
-    """The condition of a phase of which `steps` have run, with rows of `every` steps."""
+def later(stop: StopCondition | None, out: Path, step: int, steps: int, every: int) -> StopCondition | None:
+    """The condition of a phase of which `steps` have run up to a step, with rows of `every` steps."""
     if stop is None:
         return None
     gone = max(0, steps - stop.first)
-    return replace(stop, first=max(0, stop.first - steps), rows=stop.rows - gone // every, gone=gone)
+    share = _share(out, step) if gone else stop.share
+    return replace(stop, first=max(0, stop.first - steps), rows=stop.rows - gone // every, gone=gone, share=share)
+
+
+def _share(out: Path, step: int) -> str:
+    """The share of its speed that a wall near its force had after the step of a restart file, as the run printed it."""
+    found = re.findall(rf"^share_at_{step}:(\S+)$", out.read_text(encoding="utf-8", errors="replace"), re.M)
+    return found[-1] if found else "1.0"

@@ -48,6 +48,7 @@ MISS = 2e-3  # of a limit, by which a force that comes near it may fall short of
 # of a limit: a wall whose force comes so near slows in proportion to what is left; beyond the limit it goes back, ten
 # times slower, so that it does not swing where a step alone changes the force by as much
 SLOWING = 0.1
+LAG = 20  # steps within which the share of its speed follows, so that dashpots do not make it swing
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ def _continued(p: ScenePlan, out: Path, step: int) -> SceneDeck:
     inside = bool(phases) and step > begin
     if inside:
         part, gone = phases[0], step - begin
-        rest = replace(part, steps=part.steps - gone, stop=later(part.stop, gone, p.every))
+        rest = replace(part, steps=part.steps - gone, stop=later(part.stop, out, step, gone, p.every))
         phases = (replace(rest, time_step=None, data=None, fills=(), gates=(), commands=()), *phases[1:])
     last = number if inside else number - 1  # the phase whose motions and planes the restart file meets
     return replace(

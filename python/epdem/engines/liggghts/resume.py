@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene in LIGGGHTS that continues from a restart file."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -27,12 +26,6 @@ def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[In
             yield replace(f, fill=replace(f.fill, phase=names[number]))
 
 
-def _share(out: Path, step: int) -> str:
-    """The share of its speed that a wall near its force had in the step after a restart file, as the run printed it."""
-    found = re.findall(rf"^share_at_{step}:(\S+)$", out.read_text(encoding="utf-8", errors="replace"), re.M)
-    return found[-1] if found else "1.0"
-
-
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
@@ -43,9 +36,7 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
         at_once = [f for f in d.insertions if f.fill.rate is None and f.fill.phase == part.run.name]
         comes = step == begin and bool(part.bodies or at_once)
         gone = step - begin
-        stop = later(part.stop, gone, p.every)
-        if stop and stop.kept and part.stop and gone > part.stop.first:
-            stop = replace(stop, kept=(str(step + 1), _share(folder / launcher.OUT, step)))
+        stop = later(part.stop, folder / launcher.OUT, step, gone, p.every)
         rest = replace(part, steps=part.steps - gone, stop=stop)
         d = replace(d, phases=(*d.phases[:number], rest, *d.phases[number + 1 :]))
     path = folder / "in.resume"

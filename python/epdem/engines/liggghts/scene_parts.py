@@ -171,10 +171,6 @@ def insertions(p: ScenePlan) -> tuple[InsertFix, ...]:
     return tuple(result)
 
 
-# where a restart file is due: the share of its speed that a wall near its force has in the next step
-KEEP = ("variable kept equal ${share}", "variable kept_at equal ${now}+1", "print share_at_${now}:${share}")
-
-
 def _way(p: ScenePlan, name: str) -> list[str]:
     """The way of a wall, with which LIGGGHTS moves the point of its torque."""
     return [f"$(f_{decks.wall_id(name)}[{k}]-({decks.number(x)}))" for k, x in enumerate(torque_origin(p, name), 7)]
@@ -219,11 +215,6 @@ def _force(p: ScenePlan, name: str, k: int) -> str:
     return f"c_load{1 + p.measured_walls.index(name)}[{k}]"
 
 
-def _before(name: str, k: int) -> str:
-    """A component of the force on a wall that slows at the step before."""
-    return f"f_before_{name}[{k}]"
-
-
 def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
     """The phases of a scene."""
     gates = {w.name: primitive(p, w, force=bool(p.contacts)) for w in p.scene.gates}
@@ -258,8 +249,8 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
             driven=tuple((name, _way(p, name)) for name in p.driven_before(run.name)),
             power=power(p, run) if with_power else "",
             speeds=(*[("share", "1.0")] * (run.slows is not None), *(v for x in words.values() for v in x.variables)),
-            stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop, before=_before),
-            restart_commands=(*(KEEP if run.slows is not None else ()), *WRITE_RESTART),
+            stop=stop_condition(p, run, partial(_height, p), partial(_force, p), stop),
+            restart_commands=WRITE_RESTART,
         )
         found.append(part)
     return tuple(found)

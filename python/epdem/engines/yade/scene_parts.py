@@ -17,9 +17,9 @@ from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.meshes import spans, surface_rotation
-from ...scenes.plan import SLOWING, Phase, PhaseSteps, ScenePlan
+from ...scenes.plan import LAG, SLOWING, Phase, PhaseSteps, ScenePlan
 from ..host import words_of_motion
-from ..input_script import BORNE, bed_height, ended_at, first_look, torque_origin
+from ..input_script import BORNE, bed_height, ended_at, first_look, torque_origin, wanted_share
 
 EDGES = (
     "walls of triangles ({}): YADE counts a sphere that touches an edge once for each triangle there, so that its "
@@ -211,6 +211,16 @@ class Stop:
     limit: float = 0.0
     walls: tuple[str, ...] = ()
     missing: str = ""
+
+    @property
+    def wanted(self) -> str:
+        """Formula of the share that walls come to have, of x."""
+        return wanted_share("x")
+
+    @property
+    def lag(self) -> int:
+        """Steps within which the share follows."""
+        return LAG
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:

@@ -135,6 +135,8 @@ class Recorder:
         self._stops: Sequence[int] | None = None
         self._missing: Callable[[dict[str, float]], float] | None = None
         self._full: list[Any] | None = None  # velocities of walls that slow
+        self._wanted: Callable[[float], float] = float
+        self._lag, self._share = 1, 1.0
         self._held, self._value, self._other = -1, 0.0, 0.0  # step at which the condition held, what it held at
         self._came = 0  # spheres at the end of the phase before
         self._void: Callable[[], float] | None = None
@@ -154,6 +156,8 @@ class Recorder:
         opposite: Callable[[dict[str, float]], float] | None = None,
         stops: Sequence[int] | None = None,
         missing: Callable[[dict[str, float]], float] | None = None,
+        wanted: Callable[[float], float] = float,
+        lag: int = 1,
         limit: float = 0.0,
         after: int = 0,
         void: Callable[[], float] | None = None,
@@ -161,9 +165,9 @@ class Recorder:
         """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, which
         is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
         that rest from then on, where `look` looks at the condition, without it each row does; missing: force over that
-        at which these bodies slow, each by the same share, without it they do not; limit: of the value, near
-        which looks are frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame
-        and a table.
+        at which these bodies slow, without it they do not; wanted: the share of their speed that they come to have
+        within `lag` steps; limit: of the value, near which looks are frequent; void: height of the void in a pressed
+        bed [m], whose loss ends the run with a frame and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
@@ -172,6 +176,7 @@ class Recorder:
         self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
         self._opposite, self._stops, self._limit, self._held = opposite, stops, limit, -1
         self._missing, self._full = missing, None
+        self._wanted, self._lag, self._share = wanted, lag, 1.0
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
@@ -268,8 +273,8 @@ class Recorder:
         if self._missing:
             if O.iter % LOOK == 0:
                 self._look(row)
-            missing = min(1.0, max(-1.0, self._missing(row)))
-            self._slow(missing if missing > 0.0 else 0.1 * missing)
+            self._share += (self._wanted(self._missing(row)) - self._share) / self._lag
+            self._slow(self._share)
             return 1
         self._look(row)
         left = abs(1.0 - self._value / self._limit)
