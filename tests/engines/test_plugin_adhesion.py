@@ -13,6 +13,7 @@ from test_plugin_launch import deck as plain_deck
 from test_plugin_launch import refusal, started
 
 from epdem.theory import adhesion
+from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 every_law = pytest.mark.parametrize("law", ADHESIVE)
@@ -100,8 +101,10 @@ def test_a_sphere_that_is_held_across_a_gap_slides_over_the_triangles_of_a_mesh(
     assert np.abs(ends[2] - ends[0]).max() < 1e-9
 
 
-@every_law
-@pytest.mark.parametrize("share", [-0.8, 20.0], ids=["pulled", "loaded"])
+@pytest.mark.parametrize(
+    ("law", "share"),
+    [("thornton_ning", -0.8), ("jkr", 20.0), thorough("jkr", -0.8), thorough("thornton_ning", 20.0)],
+)
 def test_a_pair_turned_through_one_revolution_keeps_its_force(tmp_path, law, share):
     """Held at an overlap of `share` gaps, over the borders of two ranks and of the periodic box."""
     c = theory(law, 1, 3, R, 0.7 * R)

@@ -11,6 +11,7 @@ from plugin_decks import good
 from tutorials import FOLDER, archive, rewritten, unpacked
 
 from epdem.tools.convert import convert
+from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 DOCS = Path(__file__).parents[2] / "docs"
@@ -72,7 +73,7 @@ def test_a_normal_dashpot_needs_no_line_and_without_friction_the_restitution_has
     assert "coefficientRestitution has no effect" in line
 
 
-@pytest.mark.parametrize("name", ["packing/in.packing", "cohesion/in.noCohesion"])
+@pytest.mark.parametrize("name", [thorough("packing/in.packing"), "cohesion/in.noCohesion"])
 def test_a_converted_tutorial_runs_and_yields(name, tmp_path):
     if archive() is None:
         pytest.skip("LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)")

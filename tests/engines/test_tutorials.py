@@ -12,6 +12,7 @@ from plugin_decks import good
 from tutorials import STEPS, archive, decks, rewritten, unpacked
 
 from epdem.tools.deck_checks import check
+from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 SHORT = ["packing/in.packing", "heatTransfer_1/in.heatGran"]
@@ -33,7 +34,7 @@ def rows(name, folder, model, **changes) -> np.ndarray:
     return np.array(found)
 
 
-@pytest.mark.parametrize("name", CHOSEN)
+@pytest.mark.parametrize("name", [thorough(name, unless=CHOSEN is not SHORT or name == SHORT[0]) for name in CHOSEN])
 def test_a_tutorial_has_the_rows_of_hertz_and_loses_energy_where_it_yields(name, tmp_path):
     if archive() is None:
         pytest.skip(MISSING)
