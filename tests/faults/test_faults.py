@@ -106,6 +106,7 @@ def test_planted_faults_of_the_plugin_for_lammps_turn_their_tests_red(spoilt):
 
 
 @pytest.mark.yade("module")
+@pytest.mark.skipif("YADE_SOURCE" not in os.environ, reason="YADE_SOURCE names no source of YADE")
 @pytest.mark.faults
 def test_planted_faults_of_the_module_for_yade_turn_their_tests_red(spoilt):
     module = build_yade(spoilt, with_switches(spoilt, OF_YADE))
