@@ -72,14 +72,15 @@ def stored_share(y: Array, tau: Array) -> Array:
     return np.asarray(most * np.tensordot(weights, force * slope, 1))
 
 
-def unload(law: Cavity, peak: Array, way: Array, soft: Array) -> tuple[Array, Array]:
-    """Force [N] and elastic energy [J] at a way [m] below the peak overlap with the modulus E*/soft."""
-    F, a, tau = (np.asarray(x) for x in (law.force(peak), law.radius(peak), law.flatness(peak)))
+def unload(law: Cavity, peak: Array, F: Array, way: Array, soft: Array) -> tuple[Array, Array]:
+    """Force [N] and elastic energy [J] at a way [m] below the peak overlap with the modulus E*/soft; F: peak force."""
+    a, tau = law.radius(peak), law.flatness(peak)
     A, B = 0.75 * (1 - tau), 2 / np.pi * tau
     x = way / soft * law.E_star * a / F
     S = np.maximum(B + np.sqrt(B * B + 4 * A * x), 1e-300)
     y = np.clip(2 * x / S, 0.0, 1.0)
-    force = law.unloading_force(peak - way / soft, peak)
+    share = F / law.force(peak)  # the way scales with the peak force
+    force = share * law.unloading_force(peak - way / soft / share, peak)
     return force, np.asarray(soft * F**2 / (law.E_star * a) * stored_share(y, tau))
 
 
@@ -116,6 +117,7 @@ class Bed:
         self.grown, self.shift, self.unstored = np.zeros((3, contacts))  # u, q [m] and (1-G) U [J]
         self.peak, self.peak_force = np.zeros((2, contacts))  # overlap with growth [m] and force [N] at the peak
         self.gamma = np.ones(contacts)
+        self.pressure = np.zeros(n + 1)  # largest so far of each sphere [Pa], and 0 of planes
         self._near: Index = np.zeros(0, np.intp)
         self._law: Cavity | None = None
 
@@ -140,18 +142,41 @@ class Bed:
         n = len(self.radius)
         return np.asarray(np.bincount(self.i[k], to_i, n + 1) + np.bincount(self.j[k] % (n + 1), to_j, n + 1), float)
 
-    def _by_others(self, k: Index, residual: Array) -> Array:
-        """Overlap u [m] that each contact gains by the dents of the others."""
+    def _depths(self, k: Index, overlap: Array) -> tuple[Array, Array]:
+        """Depths [m] of both spheres to the plane where they intersect."""
+        R_i, wall = self.R_i[k], self.wall[k]
+        R_j = np.where(wall, 1.0, self.R_j[k])
+        half = 0.5 * overlap / (R_i + R_j - overlap)
+        return np.where(wall, overlap, half * (2 * R_j - overlap)), np.where(wall, 0, half * (2 * R_i - overlap))
+
+    def _pressure(self, k: Index, force: Array, overlap: Array) -> Array:
+        """Mean pressure [Pa] of all spheres: sum F (R - h)/(3 V), h: depth; 0 of planes."""
+        depth_i, depth_j = self._depths(k, overlap)
+        moment_i, moment_j = force * (self.R_i[k] - depth_i), force * (np.where(self.wall[k], 0, self.R_j[k]) - depth_j)
+        found = self._sum(k, moment_i, moment_j) / (4 * np.pi * np.append(self.radius, 1.0) ** 3)
+        found[-1] = 0.0
+        return found
+
+    def _between(self, k: Index, g: Array, p: Array) -> Array:
+        """Pressure [Pa] of both spheres of contacts, weighted by their growth R g."""
+        grown = g * np.append(self.radius, 0.0)
+        i, j = self.i[k], self.j[k]
+        weight = grown[i] + grown[j]
+        return np.asarray((grown[i] * p[i] + grown[j] * p[j]) / np.where(weight > 0, weight, 1.0))
+
+    def _by_others(self, k: Index, residual: Array) -> tuple[Array, Array]:
+        """Overlap u [m] that each contact gains by the dents of the others, and growth of all spheres."""
         R_i, wall = self.R_i[k], self.wall[k]
         R_j, w = np.where(wall, 1.0, self.R_j[k]), self.strain_i[k]
-        half = 0.5 * residual / (R_i + R_j - residual)  # to the plane where both spheres intersect
-        d_i, d_j = np.where(wall, residual, half * (2 * R_j - residual)), np.where(wall, 0, half * (2 * R_i - residual))
+        d_i, d_j = self._depths(k, residual)
         volume_i = np.minimum(1, 2 * w) * R_i * d_i**2 + np.maximum(0, 2 * w - 1) * R_j * d_j**2
         volume_j = np.minimum(1, 2 - 2 * w) * R_j * d_j**2 + np.maximum(0, 1 - 2 * w) * R_i * d_i**2
         own = (d_i / R_i, volume_i / R_i**3), (d_j / R_j, volume_j / R_j**3)
         g = growth(*(self._sum(k, *both) for both in zip(*own, strict=True)))
         u_i, u_j = g[self.i[k]] - growth(*own[0]), g[self.j[k]] - growth(*own[1])
-        return np.asarray(R_i * np.maximum(0.0, u_i) + np.where(wall, 0.0, R_j * np.maximum(0.0, u_j)))
+        u = np.asarray(R_i * np.maximum(0.0, u_i) + np.where(wall, 0.0, R_j * np.maximum(0.0, u_j)))
+        g[-1] = 0.0  # of planes
+        return u, g
 
     def _screened(self, k: Index, area: Array, yields: NDArray[np.bool_]) -> Array:
         """gamma of the contacts that yield, 1 of the others; area: m a^2 [m^2]."""
@@ -163,35 +188,51 @@ class Bed:
             found.append(screening(others, own, np.append(self.radius, 1.0)[body], self._nu[body]))
         return np.where(yields, np.clip(s * found[0] + (1 - s) * found[1], LEAST_SCREENING, 1.0), 1.0)
 
+    def _peak_force(self, law: Cavity, b: Array, alone: Array, m: Array, pressure: Array) -> Array:
+        """Force [N] at the peak overlap b, of which `alone` is without growth: growth carries 2/3 Y + pressure."""
+        F, G, a2 = law.force(b), np.zeros_like(b), np.zeros_like(b)
+        has = alone > 0.0
+        G[has], a2[has] = law.force(np.where(has, alone, b))[has], (law.radius(np.where(has, alone, b)) ** 2)[has]
+        flow = 2 / 3 * law.Y + pressure
+        return np.asarray(F - m * (F - G - np.pi * (law.radius(b) ** 2 - a2) * flow))
+
     def step(self, overlap: Array) -> Array:
         """Forces [N] of all contacts at overlaps without growth [m], negative across a gap."""
         k = np.flatnonzero(overlap > -REACH * (self.R_i + np.where(self.wall, 0.0, self.R_j)))
         law, R = self._law_of(k), self.R_star[k]
         reached = np.maximum(self.reached[k], overlap[k])
         u, q, F_before = self.grown[k], self.shift[k], self.peak_force[k]
+        body, pressure = self.pressure, np.zeros(len(k))
         touches = np.ones(len(k), bool)
         for turn in range(100):
             v = u + q
             on = overlap[k] + v > 0.0
             touches = on if turn < 30 else touches & on  # one that ends in this step does not come back in it
             b = np.maximum(reached + v, 1e-12 * R)
-            F = np.where(touches, law.force(b), 0.0)
             yields = touches & (b > law.yield_overlap)
             m = np.where(yields, 1 - law.yield_overlap / b, 0.0)
+            F = np.where(touches, self._peak_force(law, b, np.maximum(b - u, 0.0), m, pressure), 0.0)
+            share = np.where(touches, F / law.force(b), 1.0)
             area = m * law.radius(b) ** 2
             gamma = np.where(touches, np.minimum(self.gamma[k], self._screened(k, area, yields)), 1.0)
             gamma = gamma if self._grows else np.ones(len(k))
             soft = 1 - (1 - gamma) * m
-            residual = np.where(yields, np.maximum(np.maximum(reached, 0) - soft * law.recovered_overlap(b), 0), 0.0)
-            unstored = np.where(yields, (1 - soft) * law.recovered_work(b), 0.0)
+            back = share * law.recovered_overlap(b)
+            residual = np.where(yields, np.maximum(np.maximum(reached, 0) - soft * back, 0), 0.0)
+            unstored = np.where(yields, (1 - soft) * share**2 * law.recovered_work(b), 0.0)
             mean = np.where(F_before > 0, 0.5 * (F + F_before), F)
             q = self.shift[k] + np.where(yields, (unstored - self.unstored[k]) / np.where(yields, mean, 1.0), 0.0)
-            u = self._by_others(k, residual) if self._grows else u
-            if np.all(np.abs(u + q - v) <= CHANGE * R):
+            force, stored = unload(law, b, np.where(touches, F, 1.0), np.maximum(reached - overlap[k], 0.0), soft)
+            force, before = np.where(touches, force, 0.0), pressure
+            if self._grows:
+                u, g = self._by_others(k, residual)
+                body = np.maximum(self.pressure, self._pressure(k, force, overlap[k]))
+                pressure = self._between(k, g, body)
+            settled = np.all(np.abs(pressure - before) <= CHANGE * self.Y[k])
+            if settled and np.all(np.abs(u + q - v) <= CHANGE * R):
                 break
         else:
             raise ArithmeticError(f"growth of {np.max(np.abs(u + q - v) / R):.1e} R* per turn after 100 turns")
-        force, stored = unload(law, b, np.maximum(reached - overlap[k], 0.0), soft)
         after = {"force": force, "stored": stored, "grown": u, "shift": q, "unstored": unstored}
         after |= {"peak": b, "peak_force": F, "gamma": gamma, "reached": reached}
         for name, values in after.items():
@@ -199,4 +240,5 @@ class Bed:
             kept: Array = getattr(self, name)
             kept[:] = empty
             kept[k] = np.where(touches, values, empty)
+        self.pressure = np.where(self._sum(k, touches, touches) > 0, body, 0.0)
         return self.force.copy()

@@ -53,11 +53,12 @@ EPDEM_INLINE Vec<Lanes> difference(const double* base, const int* i, const int* 
   return {c.a, c.b, c.c};
 }
 
-/// Growth and area of the spheres of lanes k, k + 1, ..., which lie side by side.
+/// BodySums of the spheres of lanes k, k + 1, ..., which lie side by side.
 EPDEM_INLINE BodySums<Lanes> sums_of(const double* base, const int* index) {
-  // rows of four begin at each sphere's two numbers; two numbers can be read behind the last row
-  const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + 2 * long(index[l])); });
-  return {c.a, c.b};
+  // rows of four begin at each sphere's three numbers; one number can be read behind the last row
+  const Columns c =
+      columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + body_values * long(index[l])); });
+  return {c.a, c.b, c.c};
 }
 
 EPDEM_INLINE void put(Line* lines, int k, Vec<Lanes> t) {
@@ -169,9 +170,11 @@ struct StoredGrowth : Growing<wall, Lanes> {
     store(b.cover_i.a + k, d.cover_i);
     store(b.volume_i.a + k, d.volume_i);
     store(b.dented_area.a + k, d.area);
+    store(b.pressure_i.a + k, d.pressure_i);
     if constexpr (!wall) {
       store(b.cover_j.a + k, d.cover_j);
       store(b.volume_j.a + k, d.volume_j);
+      store(b.pressure_j.a + k, d.pressure_j);
     }
   }
 };

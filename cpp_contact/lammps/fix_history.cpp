@@ -2,6 +2,7 @@
 #include "fix_history.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 #include <unordered_map>
 
@@ -22,8 +23,8 @@ using namespace LAMMPS_NS;
 namespace {
 
 constexpr int most_beside = 2 + FixHistory::columns + 3;  // of an atom that is sent, beside its contacts
-/// First number of a restart file; files of before begin with the place of a law, from 0 on, or lack the walls.
-constexpr double restart_form = -3.0, form_without_walls = -2.0;
+/// First number of a restart file; files of before have another number, and lack walls or pressures.
+constexpr double restart_form = -4.0;
 
 }  // namespace
 
@@ -33,7 +34,7 @@ FixHistory::FixHistory(LAMMPS* lmp, int count, char** word) : Fix(lmp, count, wo
   restart_peratom = 1;
   maxexchange_dynamic = 1;
   maxexchange = most_beside;
-  comm_forward = 2;
+  comm_forward = body_values;
   peratom_flag = count > 3;
   size_peratom_cols = columns;
   peratom_freq = 1;
@@ -103,41 +104,45 @@ void FixHistory::add_works(const kernels::Block& b, int n, const Models& models,
 }
 
 void FixHistory::close_growth(bool counts) {
-  bodies_.resize(2L * rows_ + 2);  // kernels read two numbers behind the last sphere
+  bodies_.resize(long(body_values) * rows_ + 1);  // kernels read one number behind the last sphere
   largest_ = growth_reach;
   if (counts) {
     for (int i = 0; i < atom->nlocal; ++i) {
       const double* const dents = &dents_[dent_sums * long(i)];
-      bodies_[2L * i] = epdem::growth(dents[0], dents[1]);
-      bodies_[2L * i + 1] = dents[2];
+      const BodySums<double> now = sums_of_step(dents, array_atom[i][largest_pressure]);
+      array_atom[i][largest_pressure] = now.pressure;
+      std::memcpy(&bodies_[long(body_values) * i], &now, sizeof now);
     }
     comm->forward_comm(this);
     largest_ = 0.0;
-    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) largest_ = std::max(largest_, bodies_[2L * i]);
+    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) largest_ = std::max(largest_, bodies_[long(body_values) * i]);
   }
   std::fill_n(dents_.begin(), dent_sums * long(atom->nlocal), 0.0);
 }
 
 void FixHistory::note_dents(const kernels::Block& b, int n, bool wall) {
-  const auto add = [this](int i, double cover, double volume, double area) {
+  const auto add = [this](int i, double cover, double volume, double area, double pressure) {
     double* const dents = &dents_[dent_sums * long(i)];
     dents[0] += cover;
     dents[1] += volume;
     dents[2] += area;
+    dents[3] += pressure;
   };
   for (int k = 0; k < n; ++k) {
-    add(b.i[k], b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k]);
-    if (!wall && b.j[k] < atom->nlocal) add(b.j[k], b.cover_j.a[k], b.volume_j.a[k], b.dented_area.a[k]);
+    add(b.i[k], b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k], b.pressure_i.a[k]);
+    if (!wall && b.j[k] < atom->nlocal)
+      add(b.j[k], b.cover_j.a[k], b.volume_j.a[k], b.dented_area.a[k], b.pressure_j.a[k]);
   }
 }
 
 int FixHistory::pack_forward_comm(int n, int* atoms, double* buffer, int, int*) {
-  for (int k = 0; k < n; ++k) std::copy_n(&bodies_[2L * atoms[k]], 2, buffer + 2L * k);
-  return 2 * n;
+  for (long k = 0; k < n; ++k)
+    std::copy_n(&bodies_[long(body_values) * atoms[k]], body_values, buffer + body_values * k);
+  return body_values * n;
 }
 
 void FixHistory::unpack_forward_comm(int n, int first, double* buffer) {
-  std::copy_n(buffer, 2L * n, &bodies_[2L * first]);
+  std::copy_n(buffer, long(body_values) * n, &bodies_[long(body_values) * first]);
 }
 
 void FixHistory::note_strain(const kernels::Block& b) {
@@ -317,13 +322,13 @@ void FixHistory::write_restart(FILE* file) {
 
 void FixHistory::restart(char* stored) {
   const double* const values = reinterpret_cast<const double*>(stored);
-  if (values[0] != restart_form && values[0] != form_without_walls)
+  if (values[0] != restart_form)
     error->all(FLERR, "pair_style ep: the restart file comes from a former version of epdem; run its deck again");
   identity_.assign(values + 1, values + 5);
   layout_.values = static_cast<int>(values[4]);
   evaluations_ = values[5];
   std::copy_n(values + 6, 2, strain_);
-  if (values[0] == restart_form) walls_ = utils::split_words(std::string(values + 9, values + 9 + long(values[8])));
+  walls_ = utils::split_words(std::string(values + 9, values + 9 + long(values[8])));
 }
 
 std::string FixHistory::claim_wall(const std::string& fix, bool found) {

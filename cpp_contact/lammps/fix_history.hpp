@@ -48,8 +48,17 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double>& page() { return page_; }
 
   /// Energies are requested: columns plastic work, elastic energy, loaded contacts, work lost by friction, elastic
-  /// energy of friction, work lost by adhesion in its jumps.
-  enum Column { plastic_work, elastic_energy, loaded_contacts, friction_work, friction_energy, adhesive_work, columns };
+  /// energy of friction, work lost by adhesion in its jumps. With compaction: largest pressure.
+  enum Column {
+    plastic_work,
+    elastic_energy,
+    loaded_contacts,
+    friction_work,
+    friction_energy,
+    adhesive_work,
+    largest_pressure,
+    columns
+  };
   class HalfEnergies;
   /// What scatter_pairs adds beside the forces: half of plastic work and elastic energy to each atom of this rank.
   HalfEnergies half_energies(const kernels::Block& b, const Models& models);
@@ -115,8 +124,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> identity_;    // of the models whose histories these are: their ids, numbers of a contact
   double evaluations_ = 0.0;
   double strain_[2] = {};
-  static constexpr int dent_sums = 3;
-  std::vector<double> dents_;   // with compaction, by atom: sums of cover, volume and area of the dents
+  std::vector<double> dents_;   // with compaction, by atom: sums of the dents
   std::vector<double> bodies_;  // BodySums, also of ghosts
   double largest_ = 0.0;        // growth
   bool page_holds_ = false;     // else the atoms hold the histories

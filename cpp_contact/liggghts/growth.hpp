@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "epdem/compaction.hpp"
@@ -10,30 +11,30 @@
 
 namespace epdem::liggghts {
 
-/// Per-atom properties: growth and area of the contacts (BodySums) of the step before, and sums, to which the contacts
-/// of this step add their dents: cover, volume and area. Walls come after the pairs, so that the sums close at the
-/// begin of the next pass over the pairs.
+/// Per-atom properties: growth, area of the contacts and pressure (BodySums) of the step before, and sums, to which the
+/// contacts of this step add their dents: cover, volume, area and pressure. Walls come after the pairs, so that the
+/// sums close at the begin of the next pass over the pairs.
 class Growth {
  public:
   /// For the pair style, whose settings come first: creates the properties.
   static void create(LAMMPS_NS::LAMMPS* lmp) {
     const char* bodies[] = {bodies_name, "all", "property/atom", bodies_name, "vector", "yes",
-                            "yes",       "no",  "0.0",           "0.0"};
+                            "yes",       "no",  "0.0",           "0.0",       "0.0"};
     const char* sums[] = {sums_name, "all", "property/atom", sums_name, "vector", "yes",
-                          "no",      "no",  "0.0",           "0.0",     "0.0"};
-    if (!find(lmp, bodies_name, 2, bodies_name))
-      lmp->modify->add_fix_property_atom(10, const_cast<char**>(bodies), bodies_name);
-    if (!find(lmp, sums_name, 3, sums_name))
-      lmp->modify->add_fix_property_atom(11, const_cast<char**>(sums), sums_name);
+                          "no",      "no",  "0.0",           "0.0",     "0.0",    "0.0"};
+    if (!find(lmp, bodies_name, body_values, bodies_name))
+      lmp->modify->add_fix_property_atom(11, const_cast<char**>(bodies), bodies_name);
+    if (!find(lmp, sums_name, dent_sums, sums_name))
+      lmp->modify->add_fix_property_atom(12, const_cast<char**>(sums), sums_name);
   }
 
   /// Whether the pair style has compaction.
-  static bool exists(LAMMPS_NS::LAMMPS* lmp) { return find(lmp, bodies_name, 2, bodies_name) != nullptr; }
+  static bool exists(LAMMPS_NS::LAMMPS* lmp) { return find(lmp, bodies_name, body_values, bodies_name) != nullptr; }
 
   /// Before each run, for pairs and walls.
   void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
-    bodies_ = find(lmp, bodies_name, 2, model.c_str());
-    sums_ = find(lmp, sums_name, 3, model.c_str());
+    bodies_ = find(lmp, bodies_name, body_values, model.c_str());
+    sums_ = find(lmp, sums_name, dent_sums, model.c_str());
     if (bodies_ && sums_) return;
     const std::string text = "model " + model + ": compaction on of a wall needs it for the pair style as well";
     lmp->error->all(FLERR, text.c_str());
@@ -45,15 +46,15 @@ class Growth {
     if (nlocal == 0 && atom.nghost == 0) return static_cast<void>(bodies_->do_forward_comm());
     double *sums = sums_->array_atom[0], *body = bodies_->array_atom[0];
     double largest = 0.0;
-    for (int i = 0; i < nlocal; ++i, sums += 3, body += 2) {
-      body[0] = growth(sums[0], sums[1]);
-      largest = std::max(largest, body[0]);
-      body[1] = sums[2];
-      sums[0] = sums[1] = sums[2] = 0.0;
+    for (int i = 0; i < nlocal; ++i, sums += dent_sums, body += body_values) {
+      const BodySums<double> now = sums_of_step(sums, body[2]);
+      std::memcpy(body, &now, sizeof now);
+      largest = std::max(largest, now.growth);
+      std::fill_n(sums, dent_sums, 0.0);
     }
     bodies_->do_forward_comm();
     const double* const all = of_all();
-    for (long i = nlocal; i < nlocal + atom.nghost; ++i) largest = std::max(largest, all[2 * i]);
+    for (long i = nlocal; i < nlocal + atom.nghost; ++i) largest = std::max(largest, all[body_values * i]);
     largest_ = largest;
   }
 
@@ -65,15 +66,16 @@ class Growth {
   /// The same with room for growth until the next neighbor lists.
   double factor_until_lists() const { return touch_factor(largest_ + 0.02); }
 
-  /// Three numbers per sphere, for a loop that adds by itself as `add` does.
+  /// dent_sums numbers per sphere, for a loop that adds by itself as `add` does.
   double* sums() { return sums_->array_atom[0]; }
 
   /// Adds the dents of a contact of this step to a body.
-  void add(int body, double cover, double volume, double area) {
+  void add(int body, double cover, double volume, double area, double pressure) {
     double* const sums = sums_->array_atom[body];
     sums[0] += cover;
     sums[1] += volume;
     sums[2] += area;
+    sums[3] += pressure;
   }
 
  private:

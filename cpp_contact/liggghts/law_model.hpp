@@ -148,8 +148,8 @@ class LawModel : public NormalModel {
     if (!keep) return contact;
     std::memcpy(state, &growth.state, sizeof growth.state);
     const Dents<double>& d = growth.dents;
-    growth_.add(s.i, d.cover_i, d.volume_i, d.area);
-    if (!wall && s.j < atom->nlocal) growth_.add(s.j, d.cover_j, d.volume_j, d.area);
+    growth_.add(s.i, d.cover_i, d.volume_i, d.area, d.pressure_i);
+    if (!wall && s.j < atom->nlocal) growth_.add(s.j, d.cover_j, d.volume_j, d.area, d.pressure_j);
     return contact;
   }
 

@@ -41,7 +41,7 @@ class EpGrowth : public GlobalEngine {
                                         " has no EpState; give the sphere its EpMat when it is made");
         continue;
       }
-      double cover = 0.0, volume = 0.0, area = 0.0;
+      double sums[epdem::dent_sums] = {};
       for (const auto& [other, contact] : body->intrs) {
         if (!contact->isReal()) continue;
         const auto* const phys = exactly<EpPhys>(contact->phys.get());
@@ -50,12 +50,15 @@ class EpGrowth : public GlobalEngine {
         std::memcpy(&dents, &phys->history[phys->growthAt() + epdem::growth_values], sizeof dents);
         // i is the first sphere
         const bool first = phys->wall != 0 || contact->getId1() == id;
-        cover += first ? dents.cover_i : dents.cover_j;
-        volume += first ? dents.volume_i : dents.volume_j;
-        area += dents.area;
+        sums[0] += first ? dents.cover_i : dents.cover_j;
+        sums[1] += first ? dents.volume_i : dents.volume_j;
+        sums[2] += dents.area;
+        sums[3] += first ? dents.pressure_i : dents.pressure_j;
       }
-      state->growth = epdem::growth(cover, volume);
-      state->dentedArea = area;
+      const epdem::BodySums<double> now = epdem::sums_of_step(sums, state->pressure);
+      state->growth = now.growth;
+      state->dentedArea = now.area;
+      state->pressure = now.pressure;
     }
   }
 

@@ -22,7 +22,8 @@ class EpState : public State {
     ((Real, adhesionLoss, 0., , "energy that adhesion lost [J]"))
     ((Real, frictionWork, 0., , "work of friction [J], with partial slip"))
     ((Real, growth, 0., Attr::readonly, "growth of the sphere over its radius by the dents of its contacts, with compaction"))
-    ((Real, dentedArea, 0., Attr::readonly, "sum of the areas of its contacts that yield [m^2], with compaction")),
+    ((Real, dentedArea, 0., Attr::readonly, "sum of the areas of its contacts that yield [m^2], with compaction"))
+    ((Real, pressure, 0., Attr::readonly, "largest mean pressure by its contacts so far [Pa], with compaction")),
     createIndex(););
   // clang-format on
   REGISTER_CLASS_INDEX(EpState, State);

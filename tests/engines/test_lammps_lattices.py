@@ -50,7 +50,7 @@ def test_lattices_of_spheres_have_the_stresses_of_numpy(name, curves):
     for host, theory in zip(in_host[1:], by_theory, strict=True):
         error = np.abs(host - theory) / theory.max()
         assert error[:401].max() < 1e-3
-        assert error[401:].max() < 0.01
+        assert error[401:].max() < 0.012
     assert by_theory[0][-1] < 0.6 * by_theory[0].max()  # the walls were released
 
 

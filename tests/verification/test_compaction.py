@@ -41,8 +41,8 @@ def test_without_growth_the_pressure_of_dense_lattices_is_far_too_low():
         assert deviation(name, [0.95], curve)[0] < -0.2
 
 
-@pytest.mark.parametrize(("name", "by_law", "by_elements"), [("die", 0.68, 0.44), ("die_soft", 0.37, 0.34)])
-def test_side_stress_of_a_die_is_too_large(name, by_law, by_elements, curves):
+@pytest.mark.parametrize(("name", "by_law", "by_elements"), [("die", 0.43, 0.44), ("die_soft", 0.26, 0.34)])
+def test_side_stress_of_a_die(name, by_law, by_elements, curves):
     """Over the axial stress at D = 0.85; without growth there is none."""
     at, szz, sxx = finite_elements(name, np.array([0.85]))
     d, axial, lateral = curves[name]
@@ -64,19 +64,19 @@ def ratios(releases, shares=(0.75, 0.5, 0.25, 0.02)):
 
 
 def test_recovery_of_released_lattices_against_finite_elements(releases):
-    """To D = 0.95, nu = 0.2 and 0.34: at 2 % of the force 0.86 to 1.16, at 75, 50 and 25 % 0.88 to 1.25."""
+    """To D = 0.95, nu = 0.2 and 0.34: at 2 % of the force 0.90 to 1.14, at 75, 50 and 25 % 0.88 to 1.28."""
     found = np.array([r for (_, _, nu, D, *_), r in ratios(releases) if nu in (0.2, 0.34) and D <= 0.95])
     assert len(found) == 22
-    assert found[:, 3].min() > 0.855 and found[:, 3].max() < 1.165
-    assert found[:, :3].min() > 0.875 and found[:, :3].max() < 1.255
+    assert found[:, 3].min() > 0.895 and found[:, 3].max() < 1.145
+    assert found[:, :3].min() > 0.87 and found[:, :3].max() < 1.29
 
 
 def test_recovery_at_other_poisson_ratios_and_at_the_limit(releases):
-    """Above D = 0.95 and beside nu = 0 and 0.45 the last of the force comes back up to 30 % too early or too late."""
+    """Above D = 0.95 and beside nu = 0 and 0.45 the last of the force comes back up to 27 % too early or too late."""
     found = np.array([r for (_, _, nu, D, *_), r in ratios(releases) if nu not in (0.2, 0.34) or D > 0.95])
     assert len(found) == 8
-    assert found[:, :3].min() > 0.96 and found[:, :3].max() < 1.28
-    assert found[:, 3].min() > 0.68 and found[:, 3].max() < 1.17
+    assert found[:, :3].min() > 0.945 and found[:, :3].max() < 1.36
+    assert found[:, 3].min() > 0.73 and found[:, 3].max() < 1.165
 
 
 @pytest.mark.parametrize(("name", "density"), [("fcc", 0.80), ("fcc", 0.85), ("fcc", 0.95), ("sc", 0.65), ("sc", 0.90)])

@@ -13,6 +13,9 @@
 //    A contact unloads with E*/G, G = 1 - (1-gamma) m; m = 1 - alpha_Y/b weighs contacts by yield, b: peak overlap.
 // 3. Energy. What a screened contact does not store is not taken from the walls: its overlap also grows by q,
 //    F dq = d[(1-G) U], U: recoverable work of the law at the peak.
+// 4. Pressure. What growth adds is not indented by its counterpart: it is the flowing body laid against it, and carries
+//    2/3 Y + P, P: mean pressure of the body, sum F (R - d)/(3 V), the largest so far. Of the force of the law, what
+//    growth adds to it by the hardness gives way to the area that growth adds times 2/3 Y + P, in the share m.
 // The law is that of the overlap alpha + v, v = u + q.
 #pragma once
 
@@ -50,16 +53,23 @@ EPDEM_INLINE T growth(T cover, T volume) noexcept {
 /// What the contacts of a body did to it in the step before.
 template <class T>
 struct BodySums {
-  T growth;  // g [-]
-  T area;    // A [m^2]
+  T growth;    // g [-]
+  T area;      // A [m^2]
+  T pressure;  // P [Pa]
 };
+
+inline constexpr int body_values = sizeof(BodySums<double>) / sizeof(double);
+
+/// Sums of a body: cover, volume, area and pressure.
+inline constexpr int dent_sums = 4;
 
 /// What a contact adds to the sums of its bodies.
 template <class T>
 struct Dents {
-  T cover_i, cover_j;    // depth over radius
-  T volume_i, volume_j;  // to S2
-  T area;                // m a^2 [m^2], to A of both
+  T cover_i, cover_j;        // depth over radius
+  T volume_i, volume_j;      // to S2
+  T area;                    // m a^2 [m^2], to A of both
+  T pressure_i, pressure_j;  // F (R - d)/(3 V) [Pa]
 };
 
 /// Values of a contact beside the history of its law, whose largest overlap is that without growth. Zeros: a new
@@ -67,15 +77,20 @@ struct Dents {
 template <class T>
 struct GrowthState {
   static constexpr const char* slots[] = {"step_overlap", "added_overlap", "screened_overlap", "raw_screening",
-                                          "screening",    "own_growth",    "dented_area",      "unstored_work"};
-  T last;      // u + q of the sums of the step before [m]
-  T added;     // v [m]: u + q extrapolated to the step
-  T shift;     // q [m]
-  T raw;       // least gamma of the sums so far
-  T gamma;     // the same extrapolated to the step, which the force uses
-  T own;       // growth of both bodies by the dents of this contact alone [m]
-  T area;      // m a^2 [m^2]
-  T unstored;  // (1-G) U [J]
+                                          "screening",    "own_growth",    "dented_area",      "unstored_work",
+                                          "step_growth",  "growth",        "step_pressure",    "pressure"};
+  T last;           // u + q of the sums of the step before [m]
+  T added;          // v [m]: u + q extrapolated to the step
+  T shift;          // q [m]
+  T raw;            // least gamma of the sums so far
+  T gamma;          // the same extrapolated to the step, which the force uses
+  T own;            // growth of both bodies by the dents of this contact alone [m]
+  T area;           // m a^2 [m^2]
+  T unstored;       // (1-G) U [J]
+  T last_grown;     // u of the sums of the step before [m]
+  T grown;          // u extrapolated to the step [m], in `added`
+  T last_pressure;  // P of the sums of the step before [Pa]
+  T pressure;       // the same extrapolated to the step, which the force uses
 };
 
 inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double);
@@ -98,9 +113,17 @@ struct Growing {
   void keep() const noexcept {}
 };
 
+/// What follows from the sums of a body in a step; pressure: its largest so far, which a body without contacts forgets.
+inline BodySums<double> sums_of_step(const double* sums, double pressure) noexcept {
+  const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
+  return {growth(sums[0], sums[1]), sums[2], touches ? std::fmax(pressure, sums[3]) : 0.0};
+}
+
 /// The sums of one body, from the array in which a host stores the sums of all bodies; null: without compaction.
 inline BodySums<double> sums_of(const double* all, long body) noexcept {
-  return all ? BodySums<double>{all[2 * body], all[2 * body + 1]} : BodySums<double>{};
+  if (!all) return {};
+  const double* const of_body = all + body_values * body;
+  return {of_body[0], of_body[1], of_body[2]};
 }
 
 /// A contact as a host stores it: radii [m], sums of the bodies, values of its GrowthState; null: a new contact.
@@ -132,26 +155,69 @@ EPDEM_INLINE T grown(const Growing<wall, T>& c, T g_i, T g_j) noexcept {
   return c.radius_i * g_i + c.radius_j * g_j;
 }
 
-/// Depths of a residual overlap in both bodies, to the plane where the spheres intersect, as parts of their sums.
+/// Depths in both bodies, over their radii, to the plane where the spheres of an overlap intersect.
+template <class T>
+struct Depths {
+  T i, j;
+};
+
 template <bool wall, class T>
-EPDEM_INLINE Dents<T> dents_of(const Growing<wall, T>& c, T strain_i, T residual, T area) noexcept {
+EPDEM_INLINE Depths<T> depths_of(const Growing<wall, T>& c, T overlap) noexcept {
+  if constexpr (wall) return {overlap * c.curvature_i, T{}};
+  const T half = 0.5 * overlap / (c.radius_i + c.radius_j - overlap);
+  const T d_i = half * (2.0 * c.radius_j - overlap), d_j = half * (2.0 * c.radius_i - overlap);
+  return {d_i * c.curvature_i, d_j * c.curvature_j};
+}
+
+/// Parts of a contact in the sums of its bodies; overlap: without growth; area: m a^2.
+template <bool wall, class T>
+EPDEM_INLINE Dents<T> dents_of(const Growing<wall, T>& c, T strain_i, T residual, T area, T overlap, T force) noexcept {
   const T more = 2.0 * strain_i - 1.0, one = constant<T>(1.0);
+  const Depths<T> x = depths_of(c, residual), now = depths_of(c, overlap);
+  const T share = force / (4.0 * pi);
+  const T p_i = share * (c.curvature_i * c.curvature_i) * (1.0 - now.i);
   if constexpr (wall) {
-    const T x = residual * c.curvature_i;
-    return {x, T{}, min(one, 1.0 + more) * (x * x), T{}, area};
+    return {x.i, T{}, min(one, 1.0 + more) * (x.i * x.i), T{}, area, p_i, T{}};
   } else {
-    const T half = 0.5 * residual / (c.radius_i + c.radius_j - residual);
-    const T d_i = half * (2.0 * c.radius_j - residual), d_j = half * (2.0 * c.radius_i - residual);
-    const T x_i = d_i * c.curvature_i, x_j = d_j * c.curvature_j;
-    T S_i = x_i * x_i, S_j = x_j * x_j;  // volume R d^2 of each dent over R^3
+    T S_i = x.i * x.i, S_j = x.j * x.j;  // volume R d^2 of each dent over R^3
     if (any(more != 0.0)) {  // the weaker body has of the other's dent what it has more than half of the strain
       const T ratio = c.radius_j * c.curvature_i, cube = ratio * ratio * ratio;
       const T to_i = max(T{}, more) * cube * S_j, to_j = max(T{}, -more) * S_i / cube;
       S_i = min(one, 1.0 + more) * S_i + to_i;
       S_j = min(one, 1.0 - more) * S_j + to_j;
     }
-    return {x_i, x_j, S_i, S_j, area};
+    return {x.i, x.j, S_i, S_j, area, p_i, share * (c.curvature_j * c.curvature_j) * (1.0 - now.j)};
   }
+}
+
+/// Pressure of the bodies [Pa], weighted by their growth.
+template <bool wall, class T>
+EPDEM_INLINE T body_pressure(const Growing<wall, T>& c) noexcept {
+  const T w_i = c.radius_i * c.i.growth;
+  if constexpr (wall) return select(w_i > 0.0, c.i.pressure, T{});
+  const T w_j = c.radius_j * c.j.growth, sum = w_i + w_j;
+  return select(sum > 0.0, (w_i * c.i.pressure + w_j * c.j.pressure) / only(sum > 0.0, sum), T{});
+}
+
+/// The backbone at the overlap b where growth has added `grown` to it; valid where b is above the elastic overlap.
+template <class Law, class T = Number<Law>>
+EPDEM_INLINE Point<T> grown_point(const Law& law, T R_star, T b, T grown, T pressure) noexcept {
+  Point<T> p = law.load(R_star, b);
+  const auto grows = grown > 0.0;
+  if (!any(grows)) return p;
+  const T alone = b - grown;
+  const auto yielded = alone > law.elastic_overlap(R_star);
+  const Point<T> elastic = hertz_point(law.E_star, R_star, max(T{}, alone));
+  T force = elastic.force, radius = elastic.radius;
+  if (any(yielded)) {
+    const Point<T> q = law.load(R_star, select(yielded, alone, b));
+    force = select(yielded, q.force, force);
+    radius = select(yielded, q.radius, radius);
+  }
+  const T area = pi * (p.radius * p.radius - radius * radius);
+  const T excess = p.force - force - area * (2.0 / 3.0 * law.Y + pressure);
+  p.force = select(grows, p.force - yielded_share(law, R_star, b) * excess, p.force);
+  return p;
 }
 
 /// gamma of a contact of this own area [m^2] in the sums, where it is above 0; without its limit 1.
@@ -184,13 +250,18 @@ EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies,
 template <class T>
 struct Added {
   T now, extrapolated;
+  T now_grown, grown;  // u of both
 };
 
 template <bool wall, class T>
 EPDEM_INLINE Added<T> added_overlap(const Growing<wall, T>& c, bool repeats) noexcept {
-  if (repeats) return {c.state.last, c.state.added};
-  const T now = max(T{}, detail::grown(c, c.i.growth, c.j.growth) - c.state.own) + c.state.shift;
-  return {now, select(c.state.raw > 0.0, max(now, 2.0 * now - c.state.last), now)};
+  const GrowthState<T>& s = c.state;
+  if (repeats) return {s.last, s.added, s.last_grown, s.grown};
+  const T u = max(T{}, detail::grown(c, c.i.growth, c.j.growth) - s.own), now = u + s.shift;
+  const auto known = s.raw > 0.0;
+  const T added = select(known, max(now, 2.0 * now - s.last), now);
+  // where a dent ends, u falls at once: no further fall follows from it
+  return {now, added, u, min(added, select(known, max(u, 2.0 * u - s.last_grown), u))};
 }
 
 /// Grown spheres whose growth over the radius is at most `largest` touch below this factor of the squared sum of their
@@ -227,6 +298,11 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   s.delta_max = select((overlap < s.reached) & (s.reached < no_overlap), s.reached, overlap);
   const Added<T> v = added_overlap(c, repeats);
   s.overlap = overlap + v.extrapolated;
+  T pressure_now = c.state.last_pressure, pressure = c.state.pressure;
+  if (!repeats) {
+    pressure_now = detail::body_pressure(c);
+    pressure = max(pressure_now, 2.0 * pressure_now - select(known, c.state.last_pressure, pressure_now));
+  }
   const T m = detail::yielded_share(law, R_star, s.delta_max + v.extrapolated);
   if (!repeats) {
     const auto screened = (m > 0.0) & (c.state.area > 0.0);
@@ -238,36 +314,46 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
 
   s.before = before;
   s.before.delta_max = s.reached + v.extrapolated;
-  const auto kept = [&](auto falls)
-                        __attribute__((always_inline)) { return falls & known & (v.extrapolated == c.state.added); };
-  s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap, kept);
+  const auto kept = [&](auto falls) __attribute__((always_inline)) {
+    const GrowthState<T>& last = c.state;
+    return falls & known & (v.extrapolated == last.added) & (v.grown == last.grown) & (pressure == last.pressure);
+  };
+  const auto load = [&](T b) __attribute__((always_inline)) {
+    return detail::grown_point(law, R_star, b, v.grown, pressure);
+  };
+  s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap, kept, load);
 
   const Point<T>& peak = s.step.after.point;
   const auto dented = m > 0.0, parts = !(s.overlap > 0.0);
   const Recovery<T> back = recovery(law.E_star, peak);
   const T residual = max(zero, s.delta_max) - s.softness * back.overlap;
   const T area = select(dented, m * (peak.radius * peak.radius), zero);
-  c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area);
+  c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area, overlap,
+                             s.step.force);
   if (!repeats) {
     const T own =
         detail::grown(c, growth(c.dents.cover_i, c.dents.volume_i), growth(c.dents.cover_j, c.dents.volume_j));
     const T unstored = select(dented, soft * back.work, zero);
     const T before_force = select(c.state.area > 0.0, before.point.force, peak.force);
     const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
-    c.state = {v.now, v.extrapolated, c.state.shift + shift, raw, gamma, own, area, unstored};
+    c.state = {v.now, v.extrapolated, c.state.shift + shift, raw,     gamma,        own,
+               area,  unstored,       v.now_grown,           v.grown, pressure_now, pressure};
   }
   // a new contact that is looked at before a step has no growth of its own yet that it could take from its sums
   if (const auto undented = repeats ? parts | !known : parts; any(undented)) {
     const Dents<T>& d = c.dents;
-    c.dents = {select(undented, zero, d.cover_i), select(undented, zero, d.cover_j), select(undented, zero, d.volume_i),
-               select(undented, zero, d.volume_j), select(undented, zero, d.area)};
+    c.dents = {select(undented, zero, d.cover_i),   select(undented, zero, d.cover_j),
+               select(undented, zero, d.volume_i),  select(undented, zero, d.volume_j),
+               select(undented, zero, d.area),      select(undented, zero, d.pressure_i),
+               select(undented, zero, d.pressure_j)};
   }
   if (any(parts)) {
     s.delta_max = select(parts, zero, s.delta_max);
     const GrowthState<T>& g = c.state;
-    c.state = {select(parts, zero, g.last), select(parts, zero, g.added),   select(parts, zero, g.shift),
-               select(parts, zero, g.raw),  select(parts, zero, g.gamma),   select(parts, zero, g.own),
-               select(parts, zero, g.area), select(parts, zero, g.unstored)};
+    c.state = {select(parts, zero, g.last),  select(parts, zero, g.added),         select(parts, zero, g.shift),
+               select(parts, zero, g.raw),   select(parts, zero, g.gamma),         select(parts, zero, g.own),
+               select(parts, zero, g.area),  select(parts, zero, g.unstored),      select(parts, zero, g.last_grown),
+               select(parts, zero, g.grown), select(parts, zero, g.last_pressure), select(parts, zero, g.pressure)};
   }
   s.state = c.state;
   return s;
@@ -307,7 +393,13 @@ template <class Law, class T = Number<Law>>
       U0 = select(was_dented, recovered_work(law.E_star, safe), U0);
     }
     const T U = recovered_work(law.E_star, select(yields, peak, peak_before));
-    const T work = law.work(R_star, from, to, F0, peak.force) + U0 - U;
+    // beside the force of the law alone, the force of growth is smooth
+    T alone0 = F0, alone = peak.force;
+    const auto grew = yields & was_dented & (s.last.grown > 0.0), grows = yields & (s.state.grown > 0.0);
+    if (any(grew)) alone0 = select(grew, law.load(R_star, only(grew, from)).force, F0);
+    if (any(grows)) alone = select(grows, law.load(R_star, to).force, peak.force);
+    const T of_growth = 0.5 * (to - from) * ((F0 - alone0) + (peak.force - alone));
+    const T work = law.work(R_star, from, to, alone0, alone) + of_growth + U0 - U;
     const T paid = 0.5 * (F0 + peak.force) * (v - v0);
     lost = select(yields, work - paid + (s.state.unstored - s.last.unstored), lost);
     held = select(yields, s.softness * U, held);

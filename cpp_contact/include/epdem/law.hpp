@@ -66,13 +66,14 @@ inline auto plausible(const Point<T>& p) noexcept {
 }
 
 /// As `step`, with another modulus [Pa] than E* below the largest overlap; kept: of the contacts below it those whose
-/// stored peak belongs to it.
-template <class Law, class Kept>
+/// stored peak belongs to it; load: the backbone above the elastic overlap.
+template <class Law, class Kept, class Load>
 inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law> R_star, const State<Law>& before,
-                                 Number<Law> delta, Kept kept) noexcept {
+                                 Number<Law> delta, Kept kept, Load load) noexcept {
   using T = Number<Law>;
   (void)modulus;
   (void)kept;
+  (void)load;
   const auto touches = delta > 0.0;
   if (!any(touches)) return {T{}, T{}, before};
   Point<T> now{};
@@ -92,10 +93,10 @@ inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law
         auto known = kept(falls);
         if (any(known)) known = known & plausible(peak);
         const auto unknown = !(elastic | known);
-        if (any(unknown)) peak = select(unknown, law.load(R_star, only(unknown, delta_max)), peak);
+        if (any(unknown)) peak = select(unknown, load(only(unknown, delta_max)), peak);
         detail::store_peak(after, touches & unknown, peak);
       } else {
-        peak = law.load(R_star, delta_max);
+        peak = load(delta_max);
       }
       if (any(falls)) peak = select(falls, unload<Law::flattens>(modulus, peak, delta_max, delta), peak);
       now = peak;
@@ -110,7 +111,13 @@ inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law
 /// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
 template <class Law>
 inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta) noexcept {
-  return step_of_modulus(law, law.E_star, R_star, before, delta, [](auto falls) { return falls; });
+  const auto load = [&](Number<Law> b) __attribute__((always_inline)) {
+    if constexpr (Law::yields)
+      return law.load(R_star, b);
+    else
+      return Point<Number<Law>>{};
+  };
+  return step_of_modulus(law, law.E_star, R_star, before, delta, [](auto falls) { return falls; }, load);
 }
 
 /// The same with a closing speed at the half step times the time step [m], which only laws with adhesion ask for.

@@ -201,9 +201,9 @@ struct Beside {
   double* const dents;
   double *const work, *const energy, *const loaded, *const parted;
   const bool gives_back;
-  double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{};
+  double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{}, pressure_i{};
   long i = 0;
-  double* const others;  // seven numbers of a ghost, which its owner computes; apart: the sums stay in registers
+  double* const others;  // eight numbers of a ghost, which its owner computes; apart: the sums stay in registers
 
   Beside(const Block& block, const Plan& plan, double* ghost)
       : b(block),
@@ -218,7 +218,10 @@ struct Beside {
   EPDEM_INLINE void begin(long body) {
     i = body;
     if constexpr (tallies) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
-    if constexpr (grown) cover_i = dents[3 * i], volume_i = dents[3 * i + 1], area_i = dents[3 * i + 2];
+    if constexpr (grown) {
+      const double* const sum = dents + dent_sums * i;
+      cover_i = sum[0], volume_i = sum[1], area_i = sum[2], pressure_i = sum[3];
+    }
   }
 
   EPDEM_INLINE void add(int k, long j, bool owned) {
@@ -241,16 +244,21 @@ struct Beside {
       cover_i += b.cover_i.a[k];
       volume_i += b.volume_i.a[k];
       area_i += b.dented_area.a[k];
-      double* const dents_j = owned ? dents + 3 * j : others + 4;
+      pressure_i += b.pressure_i.a[k];
+      double* const dents_j = owned ? dents + dent_sums * j : others + 4;
       dents_j[0] += b.cover_j.a[k];
       dents_j[1] += b.volume_j.a[k];
       dents_j[2] += b.dented_area.a[k];
+      dents_j[3] += b.pressure_j.a[k];
     }
   }
 
   EPDEM_INLINE void end(long) {
     if constexpr (tallies) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
-    if constexpr (grown) dents[3 * i] = cover_i, dents[3 * i + 1] = volume_i, dents[3 * i + 2] = area_i;
+    if constexpr (grown) {
+      double* const sum = dents + dent_sums * i;
+      sum[0] = cover_i, sum[1] = volume_i, sum[2] = area_i, sum[3] = pressure_i;
+    }
   }
 };
 
@@ -259,7 +267,7 @@ struct Beside {
 /// Adds forces and torques in the order of the list.
 template <bool torques, bool tallies, Reach reach>
 void PairLoop::scatter(const Plan& plan, int n) {
-  double ghost[7] = {};
+  double ghost[4 + dent_sums] = {};
   Beside<tallies, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan, ghost);
   scatter_pairs<torques>(*block_, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
 }

@@ -101,7 +101,7 @@ void WallLoop::scatter() {
       const auto part = [k](const auto& lines) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
       add_couple(i, mesh_[k], b.overlap.a[k], part(b.from_wall), part(b.force), part(b.torque_i));
     }
-    if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k]);
+    if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k], b.pressure_i.a[k]);
     if (!plan_->tally) continue;
     const double stored = b.stored_energy.a[k];
     plan_->tally->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);
