@@ -85,8 +85,8 @@ def pressed(folder) -> None:
     for mark in ("", "_soft"):
         material = MATERIALS[mark]
         d, axial, lateral = lammps_lattices.press_in_die(folder, material, 0.965)
-        _, szz, sxx = finite_elements("die" + mark, np.array(DIE))
-        ratios = np.interp(-np.array(DIE), -d, lateral / np.maximum(axial, 1e-30))
+        distance, szz, sxx = finite_elements("die" + mark, np.array(DIE))
+        ratios = np.interp(-distance, -d, lateral / np.maximum(axial, 1e-30))
         for at, error in zip(DIE, deviation("die" + mark, DIE, (d, axial)), strict=True):
             line(DENSE, material, "die", at, "pressure_deviation", error)
         for at, ratio, theirs in zip(DIE, ratios, sxx / szz, strict=True):
@@ -97,7 +97,8 @@ def pressed(folder) -> None:
 
 def line(law, material, name, density, quantity, value, theirs="") -> None:
     """One line of the table of pressed lattices."""
-    print(f"{law},{material.E:g},{material.nu:g},{name},{density:g},{quantity},{value:.2f},{theirs}", flush=True)
+    rounded = round(value, 2) + 0.0  # without the sign of zero
+    print(f"{law},{material.E:g},{material.nu:g},{name},{density:.2f},{quantity},{rounded:.2f},{theirs}", flush=True)
 
 
 def released(folder) -> None:
@@ -109,7 +110,7 @@ def released(folder) -> None:
         turn = np.argmin(d)
         curve = np.stack([d[turn:] - d[turn], force[turn:] / force[turn:].max()])
         for share in SHARES:
-            print(f"{name},{E:g},{nu:g},{density:g},{share:g},{recovery(curve, share) / ways[share]:.2f}", flush=True)
+            print(f"{name},{E:g},{nu:g},{density:.2f},{share:g},{recovery(curve, share) / ways[share]:.2f}", flush=True)
 
 
 if __name__ == "__main__":
