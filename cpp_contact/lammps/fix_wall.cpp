@@ -136,6 +136,7 @@ void FixWall::choose_candidates() {
   const bool checks = neighbor->dist_check && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once &&
                       neighbor->includegroup == 0 && way() < HUGE_VAL && modify->get_fix_by_style("^adapt").empty();
   candidates_.clear();
+  begin_search(checks);
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!checks || is_near(i, reach_of(i) + slack))
       candidates_.push_back(i);
@@ -379,6 +380,10 @@ bool FixWallPlanes::is_near(int i, double distance) {
   return std::fabs(x - low_) < distance || std::fabs(x - high_) < distance;
 }
 
+FixWallRegion::FixWallRegion(LAMMPS* lmp, int count, char** word, OwnRegion) : FixWall(lmp, count, word) {
+  restart_global = 1;
+}
+
 FixWallRegion::FixWallRegion(LAMMPS* lmp, int count, char** word)
     : FixWall(lmp, count, word), name_(count > 3 ? word[3] : "") {
   if (count < 5) error->all(FLERR, "{}: the words are ID group wall/ep/region REGION LAW ...", place_);
@@ -388,9 +393,14 @@ FixWallRegion::FixWallRegion(LAMMPS* lmp, int count, char** word)
   restart_global = 1;
 }
 
+Region* FixWallRegion::find_region() {
+  Region* const found = domain->get_region_by_id(name_);
+  if (!found) error->all(FLERR, "{}: region {} is gone", place_, name_);
+  return found;
+}
+
 void FixWallRegion::init() {
-  region_ = domain->get_region_by_id(name_);
-  if (!region_) error->all(FLERR, "{}: region {} is gone", place_, name_);
+  region_ = find_region();
   moves_ = region_->dynamic_check() != 0;
   parts_.clear();
   add_parts(*region_, parts_);

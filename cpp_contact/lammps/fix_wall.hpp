@@ -68,18 +68,22 @@ class FixWall : public LAMMPS_NS::Fix {
   virtual void note_placement() {}
   /// Upper limit of the way of the surface since its placement was noted [length].
   virtual double way() const { return 0.0; }
+  /// Called before candidates are chosen; holds: until they are chosen again, no other sphere can touch the wall.
+  virtual void begin_search(bool /*holds*/) {}
+
+  /// Number k of the records of a sphere, one of each contact: number of the part, history.
+  double* record(int i, int k) { return held_[i].data() + long(k) * stride_; }
+  int count(int i) const { return static_cast<int>(held_[i].size()) / stride_; }
+  bool has_records_of(int i, const std::vector<Contact>& found);
 
   const std::string place_;
 
  private:
-  double* record(int i, int k) { return held_[i].data() + long(k) * stride_; }
-  int count(int i) const { return static_cast<int>(held_[i].size()) / stride_; }
   std::vector<int> types_of_group() const;
   void choose_candidates();
   void drop_parted(int i, std::vector<Contact>& found);
   bool stands(int i, const Contact& c);
   void keep_records(int i, const std::vector<Contact>& found);
-  bool has_records_of(int i, const std::vector<Contact>& found);
   void finish(int n);
   void note(int n);
 
@@ -88,7 +92,7 @@ class FixWall : public LAMMPS_NS::Fix {
   int most_ = 0, stride_ = 0;
   double reach_ = 0.0;  // beyond the radius [length]
   double reach_factor_ = 1.0;
-  std::vector<std::vector<double>> held_;  // by atom, a record for each contact: number of the part, history
+  std::vector<std::vector<double>> held_;  // by atom
   std::vector<int> candidates_;
   bool candidates_valid_ = false;
   bool claimed_ = false;  // its contacts of a restart file, if there is one
@@ -131,6 +135,12 @@ class FixWallRegion : public FixWall {
   void restart(char* stored) override;
 
  protected:
+  /// Of a wall that has its own region.
+  struct OwnRegion {};
+  FixWallRegion(LAMMPS_NS::LAMMPS* lmp, int count, char** word, OwnRegion);
+
+  /// The region at the begin of a run.
+  virtual LAMMPS_NS::Region* find_region();
   void begin() override;
   void find(int i, std::vector<Contact>& found) override;
   bool is_near(int i, double distance) override;

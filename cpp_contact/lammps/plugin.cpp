@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Entry of the library, which LAMMPS calls when it loads it: `plugin load epdemplugin.so`, or by itself from
 // LAMMPS_PLUGIN_PATH.
+#include <cstring>
 #include <new>
 #include <string>
 
 #include "error.h"
 #include "fix_motion.hpp"
 #include "fix_wall.hpp"
+#include "fix_wall_mesh.hpp"
 #include "pair_ep.hpp"
 
 // GCC calls it where a container would be too large; the library of Linux systems before 2021 lacks it
@@ -37,6 +39,12 @@ void* create_fix(void* lmp, int count, char** word) {
   return new Fix(static_cast<LAMMPS_NS::LAMMPS*>(lmp), count, word);
 }
 
+void* create_wall(void* lmp, int count, char** word) {
+  const bool is_mesh = count > 3 && std::strcmp(word[3], "mesh") == 0;
+  return (is_mesh ? create_fix<epdem::lammps::FixWallMesh> : create_fix<epdem::lammps::FixWallPlanes>)(lmp, count,
+                                                                                                       word);
+}
+
 }  // namespace
 
 extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, void* handle, void* add) {
@@ -63,8 +71,8 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
   style("fix", FixMotion::style_name, "motion of spheres", reinterpret_cast<void*>(&create_fix<FixMotion>));
   style("fix", FixGravity::style_name, "gravity", reinterpret_cast<void*>(&create_fix<FixGravity>));
   style("fix", FixTravel::style_name, "travel of walls", reinterpret_cast<void*>(&create_fix<FixTravel>));
-  style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes",
-        reinterpret_cast<void*>(&create_fix<FixWallPlanes>));
+  style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes or triangles",
+        reinterpret_cast<void*>(&create_wall));
   style("fix", FixWallRegion::style_name, "elastic-plastic contacts with a region",
         reinterpret_cast<void*>(&create_fix<FixWallRegion>));
 }

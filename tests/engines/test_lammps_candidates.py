@@ -13,6 +13,7 @@ import pytest
 from lammps_decks import column, needs_lammps, run
 
 from epdem.engines.lammps import launcher
+from epdem.scenes.meshes import box, stl_text
 
 pytestmark = needs_lammps
 
@@ -32,6 +33,9 @@ WALLS = {
     f"move NULL NULL v_z\nfix w all wall/ep/region r {LAW}\n",
     "turning": f"variable t equal 60*step*dt\nregion r block -0.014 0.014 -0.014 0.014 -0.014 0.014 "
     f"rotate v_t 0.002 0 0 0 0 1\nfix w all wall/ep/region r {LAW}\n",
+    "triangles": f"fix w all wall/ep mesh box.stl {LAW}\n",
+    "triangles that move": "variable z equal 0.004*sin(800*step*dt)\nvariable t equal 60*step*dt\n"
+    f"fix w all wall/ep mesh box.stl move NULL NULL v_z rotate v_t 0.002 0 0 0 0 1 {LAW}\n",
     "growing": f"variable R equal 0.019-0.8*step*dt\nregion r sphere 0 0 0 v_R\nfix w all wall/ep/region r {LAW}\n",
 }
 
@@ -67,6 +71,9 @@ run 2000
 
 @pytest.mark.parametrize("what", WALLS)
 def test_candidates_give_the_bits_of_all_spheres(what, tmp_path):
+    for folder in (tmp_path / "some", tmp_path / "all"):
+        folder.mkdir()
+        (folder / "box.stl").write_text(stl_text("box", box((-0.014, 0.014, -0.014, 0.014, -0.014, 0.014))))
     some, _ = run(deck(WALLS[what], 0), tmp_path / "some")
     every, _ = run(deck(WALLS[what], 1), tmp_path / "all")
     forces = np.array([column(every, f"f_w[{axis}]") for axis in (1, 2, 3)])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
 
+from epdem.scenes.meshes import rectangle, stl_text
 from marks import thorough
 
 pytestmark = needs_lammps
@@ -56,14 +57,17 @@ MOVING = {  # variables and region of a wall that spheres lie on
     "moved": "variable way equal 0.05*step*dt\nregion wall plane 0 0 0 0 0 1 move v_way NULL v_way\n",
     "vibrating": "variable way equal 2e-5*sin(2000*step*dt)\nregion wall plane 0 0 0 0 0 1 move v_way NULL v_way\n",
     "turning": "variable angle equal 5*step*dt\nregion wall plane 0 0 0 0 0 1 rotate v_angle 0.01 0 0 0 0 1\n",
+    "triangles": "variable angle equal 5*step*dt\nvariable way equal 0.05*step*dt\n",
 }
+PLATE = "mesh ../plate.stl move v_way NULL v_way rotate v_angle 0.01 0 0 0 0 1"
 STEPS = 400
 
 
 def moving_wall(what):
     """Head of the deck, and what a deck behind read_restart repeats."""
     head = spheres((-0.02, 0, 0.00999), (0.02, 0, 0.00998), (0.03, 0.05, 0.00997), pair=LAW)
-    wall = MOVING[what] + f"fix wall all wall/ep/region wall {LAW}\nfix fall all gravity 9.81 vector 0 0 -1\n"
+    words = f"wall/ep {PLATE}" if what == "triangles" else "wall/ep/region wall"
+    wall = MOVING[what] + f"fix wall all {words} {LAW}\nfix fall all gravity 9.81 vector 0 0 -1\n"
     wall += "fix motion all nve/sphere\ntimestep 2e-6\nthermo_style custom step f_wall[1] f_wall[3] f_wall[7]\n"
     return head, wall + "thermo_modify format float %.17g\nthermo 1\n"
 
@@ -73,6 +77,7 @@ def moving_wall(what):
 )
 def test_a_wall_that_moves_goes_on_after_a_restart_to_the_bit(what, ranks, tmp_path):
     """With restitution: force, power and motion are those of a second run."""
+    (tmp_path / "plate.stl").write_text(stl_text("plate", rectangle(2, [0, 0, 0], (0.15, 0.15))))
     head, wall = moving_wall(what)
     more = "clear\natom_modify map array\ncomm_modify vel yes\nread_restart here\nneighbor 0.002 bin\n"
     deck = head + wall + f"run {STEPS}\n"

@@ -15,8 +15,8 @@ from test_stopping import alive, until
 from epdem.base.processes import call
 from epdem.engines import log
 from epdem.engines.liggghts import dump
-from epdem.engines.liggghts.scene_parts import stl_text
 from epdem.errors import EngineError
+from epdem.scenes.meshes import stl_text
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 

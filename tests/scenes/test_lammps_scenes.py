@@ -12,7 +12,6 @@ from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import deck as lammps_scene
 from epdem.errors import CaseError, EngineError
-from epdem.jobs.engine import check
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
 
@@ -146,6 +145,36 @@ def test_round_walls_hold_and_drive_a_bed_as_in_liggghts(kind, tmp_path):
     assert (ours.rows["particles"] == theirs.rows["particles"].max()).all()
 
 
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_sphere_takes_the_way_of_liggghts_in_a_bowl_of_triangles_that_shakes(ranks, tmp_path):
+    """From the same lines, of a sphere that hits the middle of a facet: rows and places."""
+    row = "5e-3,1e-3,9e-3,1.5e-3,glass,0.33,0.1,-0.9"
+    (tmp_path / "spheres.csv").write_text(f"x,y,z,radius,material,vx,vy,vz\n{row}\n")
+    bowl = next(wall for wall in own("impactor_bowl")["scene"]["wall"] if wall["kind"] == "stl")
+    wall = bowl | {"file": str(CASES / "parts/bowl.stl"), "material": "steel"}
+    shake = {"wall": wall["name"], "kind": "vibrate", "amplitude": ["0.1 mm", "0 mm", "0.2 mm"], "frequency": "60 Hz"}
+    data = parts(
+        wall=[wall],
+        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        fill=[{"name": "table", "file": "spheres.csv"}],
+        phase=[{"name": "shake", "duration": "30 ms", "move": [shake]}],
+    )
+    data["numerics"] = {"time_step": "2e-6 s"}
+    data["contact"] = {"friction": 0.3}
+    path = write_case(data, tmp_path)
+    ours = run(path, engine="lammps", out=tmp_path / "lammps", ranks=ranks).results
+    theirs = run(path, engine="liggghts", out=tmp_path / "liggghts").results
+    assert np.abs(theirs.rows["bowl_force_z"]).max() > 0
+    for name in theirs.rows:
+        largest = np.abs(theirs.rows[name]).max()
+        assert np.abs(ours.rows[name] - theirs.rows[name]).max() <= 1e-6 * largest, name
+    for name in ("x", "z", "vy", "omega_x"):
+        table = theirs.particles[name]
+        assert np.abs(ours.particles[name] - table).max() <= 1e-6 * np.abs(table).max(), name
+
+
 def turned(axis):
     """Phases of the lid: shifted along x, then turned about `axis`."""
     shift = {"wall": "lid", "kind": "linear", "velocity": ["1 m/s", "0 m/s", "0 m/s"]}
@@ -161,7 +190,10 @@ def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
     ("change", "sentence"),
     [
         ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it"),
-        ({"wall": [FLOOR, PLATE | {"wear": "1e-12 m^2/N"}]}, "scene.wall.lid.wear = 1e-12: regions have no triangles"),
+        (
+            {"wall": [FLOOR, PLATE | {"wear": "1e-12 m^2/N"}]},
+            "scene.wall.lid.wear = 1e-12: a wall has no values on its",
+        ),
         (
             {"wall": [FLOOR, PLATE], "phase": turned("z")},
             "phase.turn.move = 'rotate': a region of LAMMPS takes the axis",
@@ -171,12 +203,6 @@ def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
 def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence):
     with pytest.raises(CaseError, match=sentence):
         scene_engine("lammps").check(plan(parse(parts(**change))))
-
-
-def test_triangles_of_a_file_are_refused():
-    sentence = "scene.wall.bowl.kind = 'stl': LAMMPS's regions hold no triangles of a file; remove it or use --engine"
-    with pytest.raises(CaseError, match=sentence):
-        check(scene_engine("lammps"), plan(load(CASES / "impactor_bowl.toml")))
 
 
 BALL = {"material": "glass", "radius": "1.5 mm"}

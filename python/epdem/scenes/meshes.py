@@ -277,3 +277,17 @@ def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
                     f"reaches {axis} = {reached:.4g} m and the room is from {room[2 * k]:g} m to "
                     f"{room[2 * k + 1]:g} m; shorten its way, or enlarge the room"
                 )
+
+
+def stl_text(name: str, triangles: FloatArray) -> str:
+    """An STL solid of triangles, shape (n, 3 corners, 3 coordinates) [m].
+
+    Corners keep 13 digits, the same ones wherever a corner is repeated: neighbours share them exactly.
+    """
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    corners = 3 * ("  vertex" + 3 * " %.12e" + "\n")
+    facet = "facet normal" + 3 * " %.9e" + f"\n outer loop\n{corners} endloop\nendfacet\n"
+    rows = np.concatenate([normals[:, None], triangles], axis=1).reshape(-1, 12).tolist()
+    return f"solid {name}\n{''.join(facet % tuple(row) for row in rows)}endsolid {name}\n"

@@ -15,8 +15,8 @@ from ..case.impact import load as load_impact
 from ..engines.host import job_of
 from ..engines.liggghts.deck import deck as scene_deck
 from ..engines.liggghts.engine import Liggghts
-from ..engines.liggghts.scene_parts import stl_text
 from ..errors import CaseError
+from ..scenes.meshes import stl_text
 from ..scenes.plan import ScenePlan
 
 

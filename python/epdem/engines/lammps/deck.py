@@ -9,10 +9,12 @@ from itertools import combinations
 import numpy as np
 
 from ...base import rendering as decks
+from ...case.walls import StlWall
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
 from ...scenes import placement, quantities
 from ...scenes.columns import columns_of_frames
+from ...scenes.meshes import stl_text
 from ...scenes.model import Model
 from ...scenes.plan import PhaseSteps, ScenePlan
 from ..host import refuse
@@ -189,4 +191,6 @@ def files(p: ScenePlan) -> dict[str, str]:
     """The text of every file of a scene's deck by its name. Raises CaseError."""
     data = deck(p)
     texts = {"in.scene": decks.render("lammps/scene.in.j2", deck=data), "spheres.data": _data(p, p.phases[0].name)}
-    return texts | {phase.data: _data(p, phase.run.name) for phase in data.phases if phase.data}
+    texts |= {phase.data: _data(p, phase.run.name) for phase in data.phases if phase.data}
+    files_of_walls = [w.name for w in p.scene.wall if isinstance(w, StlWall)]
+    return texts | {f"{name}.stl": stl_text(name, p.triangles[name]) for name in files_of_walls}

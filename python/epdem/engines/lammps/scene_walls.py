@@ -9,7 +9,7 @@ from typing import Any
 
 from ...base.rendering import number, wall_id
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall
+from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
 from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.limits import PressedBed
@@ -50,10 +50,16 @@ def plane(p: ScenePlan, w: PlaneWall) -> DeckWall:
 
 
 def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
-    """The walls that are no planes, as regions. Raises CaseError for what no region of LAMMPS is."""
+    """The walls that are no planes, as regions or triangles. Raises CaseError for what no wall of LAMMPS is."""
     found = []
     for name, mesh in p.scene.meshes.items():
         id, motion = wall_id(name), _motion_words(p, name)
+        refuse(f"scene.wall.{name}.stress", mesh.stress, "a wall has no values on its triangles")
+        refuse(f"scene.wall.{name}.wear", mesh.wear, "a wall has no values on its triangles")
+        if isinstance(mesh, StlWall):
+            where = f"wall/ep mesh {name}.stl {motion}".rstrip()
+            found.append(DeckWall(id, (), where, contact(p, name)))
+            continue
         shapes = list(_shapes(p, mesh))
         ends = " ".join(filter(None, [motion, "units box"]))
         if len(shapes) == 1:
@@ -68,8 +74,6 @@ def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
 
 def _shapes(p: ScenePlan, w: MeshWall) -> Iterator[str]:
     """Style and numbers of the regions of a wall."""
-    refuse(f"scene.wall.{w.name}.stress", w.stress, "regions have no triangles")
-    refuse(f"scene.wall.{w.name}.wear", w.wear, "regions have no triangles")
     match w:
         case PlateWall():
             yield f"block {' '.join(_plate(p, w))} side out"
@@ -90,8 +94,6 @@ def _shapes(p: ScenePlan, w: MeshWall) -> Iterator[str]:
                 round_ = (low_radius,) if low_radius == high_radius else (low_radius, high_radius)
                 style = "cylinder" if len(round_) == 1 else "cone"
                 yield f"{style} z {_numbers((*w.center, *round_, low, high))}{_open((1, 2))}"
-        case _:
-            refuse(f"scene.wall.{w.name}.kind", "stl", "LAMMPS's regions hold no triangles of a file")
 
 
 def _halves(w: CylinderWall | ConeWall) -> tuple[float, ...]:

@@ -14,6 +14,7 @@ from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
 from ...scenes import quantities
 from ...scenes.columns import GROWTH
+from ...scenes.meshes import stl_text
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ...scenes.quantities import PARTICLES, SPINS
@@ -21,7 +22,7 @@ from ..host import refuse_narrow
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
-from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, stl_text, surface_meshes
+from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, surface_meshes
 from .scene_parts import data as data_files
 
 PATH = "path.bin"  # dump of impacts

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
-
 from ...base import rendering as decks
 from ...case.parts import Sphere
 from ...case.walls import Room
@@ -277,17 +275,3 @@ def _data(p: ScenePlan, spheres: Sequence[Sphere], before: int) -> str:
     typed = ((p.model.type_of(s.material), s) for s in spheres)
     rows = [(k, 2 * s.radius, p.model.types[k - 1].density, *s.place, *s.velocity, *s.spin) for k, s in typed]
     return data_text(f"spheres of {p.case.case.title}", len(p.model.types), p.box, rows, before + 1)
-
-
-def stl_text(name: str, triangles: np.ndarray) -> str:
-    """An STL solid of triangles, shape (n, 3 corners, 3 coordinates) [m].
-
-    Corners keep 13 digits, the same ones wherever a corner is repeated: neighbours share them exactly.
-    """
-    a, b, c = np.moveaxis(triangles, 1, 0)
-    normals = np.cross(b - a, c - a)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    corners = 3 * ("  vertex" + 3 * " %.12e" + "\n")
-    facet = "facet normal" + 3 * " %.9e" + f"\n outer loop\n{corners} endloop\nendfacet\n"
-    rows = np.concatenate([normals[:, None], triangles], axis=1).reshape(-1, 12).tolist()
-    return f"solid {name}\n{''.join(facet % tuple(row) for row in rows)}endsolid {name}\n"

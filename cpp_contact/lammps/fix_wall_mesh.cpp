@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "fix_wall_mesh.hpp"
+
+#include <cstring>
+#include <string>
+
+#include "error.h"
+#include "kernels/triangles.hpp"
+#include "stl.hpp"
+
+namespace epdem::lammps {
+
+using namespace LAMMPS_NS;
+using kernels::TriangleSurface;
+
+/// LAMMPS calls `surface_exterior` with the place of a sphere in the frame of the region.
+class MeshRegion final : public Region {
+ public:
+  MeshRegion(LAMMPS* lmp, const std::vector<double>& corners, int count, char** word)
+      : Region(lmp, count, word), surface(corners) {
+    options(count - 2, word + 2);
+    openflag = 1;  // both sides act
+    bboxflag = 0;
+    cmax = tmax = 32;
+  }
+
+  int inside(double, double, double) override { return 0; }
+  int surface_interior(double*, double) override { return 0; }
+  int surface_exterior(double* x, double distance) override {
+    const Vec<double> at{x[0], x[1], x[2]};
+    if (lists) {
+      surface.near(at, distance, *lists);
+      return 0;
+    }
+    if (!candidates) surface.near(at, distance, near_);
+    surface.contacts(at, distance, candidates ? *candidates : near_, found_);
+    contacts_.resize(found_.size());
+    contact = contacts_.data();
+    for (std::size_t k = 0; k < found_.size(); ++k) {
+      const TriangleSurface::Contact& c = found_[k];
+      contacts_[k] = {c.distance, c.from_wall.x, c.from_wall.y, c.from_wall.z, 0.0, c.triangle, 0};
+    }
+    return static_cast<int>(found_.size());
+  }
+
+  const TriangleSurface surface;
+  std::vector<int>* lists = nullptr;             // where to write the triangles up to a distance, in place of contacts
+  const std::vector<int>* candidates = nullptr;  // all triangles that the sphere can touch; nullptr: not known
+
+ private:
+  std::vector<int> near_;
+  std::vector<TriangleSurface::Contact> found_;
+  std::vector<Region::Contact> contacts_;
+};
+
+FixWallMesh::FixWallMesh(LAMMPS* lmp, int count, char** word) : FixWallRegion(lmp, count, word, OwnRegion{}) {
+  if (count < 6)
+    error->all(FLERR, "{}: the words are ID group wall/ep mesh FILE [move ...] [rotate ...] LAW ...", place_);
+  std::vector<double> corners;
+  const std::string wrong = read_stl(word[4], corners);
+  if (!wrong.empty()) error->all(FLERR, "{}: file {}: {}", place_, word[4], wrong);
+  int first = 5;
+  for (bool moves = true; moves;) {
+    const int words = std::strcmp(word[first], "move") == 0 ? 4 : std::strcmp(word[first], "rotate") == 0 ? 8 : 0;
+    moves = words > 0;
+    first += words;
+    if (first >= count) error->all(FLERR, "{}: the law is missing behind the motion", place_);
+  }
+  std::string fixed[] = {id, "mesh/ep", "units", "box"};
+  std::vector<char*> words;
+  for (std::string& text : fixed) words.push_back(text.data());
+  words.insert(words.end(), word + 5, word + first);
+  mesh_ = std::make_unique<MeshRegion>(lmp, corners, static_cast<int>(words.size()), words.data());
+  read(first, count, word, mesh_->tmax);
+}
+
+FixWallMesh::~FixWallMesh() = default;
+
+Region* FixWallMesh::find_region() {
+  mesh_->init();
+  return mesh_.get();
+}
+
+void FixWallMesh::begin_search(bool holds) {
+  lists_hold_ = holds;
+  near_.resize(atom->nmax);
+  for (const int i : listed_) near_[i].clear();
+  listed_.clear();
+}
+
+bool FixWallMesh::is_near(int i, double distance) {
+  const double* const x = atom->x[i];
+  mesh_->lists = &near_[i];
+  mesh_->Region::surface(x[0], x[1], x[2], distance);
+  mesh_->lists = nullptr;
+  if (near_[i].empty()) return false;
+  listed_.push_back(i);
+  return true;
+}
+
+void FixWallMesh::find(int i, std::vector<Contact>& found) {
+  mesh_->candidates = lists_hold_ ? &near_[i] : nullptr;
+  FixWallRegion::find(i, found);
+  pass_records(i, found);
+}
+
+/// A contact that passes from one triangle to another takes its record along, at best within a plane.
+void FixWallMesh::pass_records(int i, const std::vector<Contact>& found) {
+  if (count(i) == 0 || has_records_of(i, found)) return;
+  const auto is_of = [&](const Contact& c, int k) { return record(i, k)[0] == c.part; };
+  std::vector<bool> is_kept(count(i)), has_record(found.size());
+  for (std::size_t c = 0; c < found.size(); ++c)
+    for (int k = 0; k < count(i); ++k)
+      if (is_of(found[c], k)) is_kept[k] = has_record[c] = true;
+  const TriangleSurface& surface = mesh_->surface;
+  for (const bool bends : {false, true})
+    for (std::size_t c = 0; c < found.size(); ++c)
+      for (int k = 0; k < count(i) && !has_record[c]; ++k) {
+        const int before = static_cast<int>(record(i, k)[0]), now = found[c].part;
+        if (is_kept[k] || before >= surface.size()) continue;
+        if (!(bends || surface.in_one_plane(before, now)) || !surface.meet(before, now, atom->radius[i])) continue;
+        record(i, k)[0] = now;
+        is_kept[k] = has_record[c] = true;
+      }
+}
+
+}  // namespace epdem::lammps

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls of triangles in LAMMPS: one contact over a face, an edge or a corner, and the motion beside planes and regions,
+which the plugin computes without triangles."""
+
+import itertools
+import struct
+
+import numpy as np
+import pytest
+from lammps_decks import DUMP, column, lammps, needs_lammps, run, spheres
+
+from epdem.scenes.meshes import box, stl_text
+
+pytestmark = needs_lammps
+
+R = 0.01  # [m]
+FRICTION = "thornton 1e8 0.3 4e5 tangential history 0.3"
+HARD = FRICTION.replace("4e5", "8e6")
+END = "thermo_style custom step ke f_w[1] f_w[2] f_w[3] f_w[5]\nthermo_modify format float %.17g\n"
+
+
+def tiles(x, y, n, m, height=0.0):
+    """n times m rectangles between limits, of two triangles each."""
+    xs, ys = np.linspace(*x, n + 1), np.linspace(*y, m + 1)
+    found = []
+    for i, j in itertools.product(range(n), range(m)):
+        a, b, c, d = ((xs[i + di], ys[j + dj], height) for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1)))
+        found += [(a, b, c), (a, c, d)]
+    return np.array(found)
+
+
+FOOT = [(-0.08, 0, -0.02), (-0.11, 0.02, -0.02), (-0.11, -0.02, -0.02), (-0.08, 0, -0.02)]
+TOPS = [  # a plate of two triangles, a ridge between two slopes, a tip of three, all up to z = 0
+    *tiles((-0.05, 0.05), (-0.05, 0.05), 1, 1),
+    [(0.1, -0.05, 0), (0.1, 0.05, 0), (0.12, 0, -0.02)],
+    [(0.1, 0.05, 0), (0.1, -0.05, 0), (0.08, 0, -0.02)],
+    *([(-0.1, 0, 0), *edge] for edge in itertools.pairwise(FOOT)),
+]
+PLACES = {
+    "face": (0.02, -0.01),
+    "common edge": (0.012, 0.012),
+    "beside it": (-0.02, -0.02 + 1e-12),
+    "edge": (0.05, 0.017),
+    "corner of two": (-0.05, -0.05),
+    "corner of one": (0.05, -0.05),
+    "ridge": (0.1, 0.01),
+    "tip": (-0.1, 0.0),
+}
+LAWS = {"thornton": "208e9 0.3 2.8e9", "cavity": "208e9 0.3 1e9", "jkr": "1e8 0.3 0.5"}
+DURATION = {"thornton": 6e-5, "cavity": 6e-5, "jkr": 2e-3}  # [s]
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("shift", [0.0, 1e-4, 1.0])
+def test_face_edge_and_corner_give_the_rebound_of_a_plane(law, shift, tmp_path):
+    """Spheres that fall onto the wall with 1 m/s."""
+    words = f"{law} {LAWS[law]}"
+    (tmp_path / "tops.stl").write_text(stl_text("tops", np.array(TOPS) + shift))
+    head = spheres(*((x + shift, y + shift, 1.00001 * R + shift) for x, y in PLACES.values()), pair=words)
+    head = head.replace("-0.1 0.1 -0.1 0.1 -0.1 0.1", "-2 2 -2 2 -2 2")
+    dt = DURATION[law] / 4000
+    walk = f"velocity all set 0 0 -1\nfix motion all nve/sphere\ntimestep {dt}\nrun 4000\n{DUMP}"
+    _, plane = run(f"{head}fix w all wall/ep zplane {shift} NULL {words}\n{walk}", tmp_path / "plane")
+    _, mesh = run(f"{head}fix w all wall/ep mesh tops.stl {words}\n{walk}", tmp_path)
+    assert (plane[:, 6] > 0.1).all()
+    for name, (vx, vy, vz), expected in zip(PLACES, mesh[:, 4:7], plane[:, 6], strict=True):
+        assert vz == pytest.approx(expected, rel=1e-6), name
+        assert max(abs(vx), abs(vy)) <= 1e-6 * expected, name
+
+
+def rebounds(wall, start, velocity, steps, law=FRICTION, more=""):
+    head = spheres(start, pair=law)
+    walk = f"velocity all set {velocity}\nfix motion all nve/sphere\ntimestep 1e-6\nthermo 10\n{END}"
+    return f"{head}{wall}{more}{walk}run {steps}\n{DUMP}"
+
+
+def test_a_box_of_1200_triangles_gives_the_rebounds_of_a_block(tmp_path):
+    """Three rebounds, with friction: position, velocity and spin."""
+    limits = (-0.03, 0.05, -0.04, 0.06, -0.05, 0.05)
+    folder = tmp_path / "mesh"
+    folder.mkdir()
+    faces = []
+    for face in (rectangle for k in range(0, 12, 2) for rectangle in [box(limits)[k]]):
+        corner, one, other = face[0], face[1] - face[0], face[2] - face[1]
+        faces += [[corner + a * one + b * other for a, b, _ in triangle] for triangle in tiles((0, 1), (0, 1), 10, 10)]
+    assert len(faces) == 1200
+    (folder / "box.stl").write_text(stl_text("box", np.array(faces)))
+    region = f"region b block {' '.join(map(str, limits))} units box\nfix w all wall/ep/region b {HARD}\n"
+    words = ((0.0, 0.0, 0.0), "4.3 -3.1 -2.2", 60000, HARD)
+    out, (block,) = run(rebounds(region, *words), tmp_path / "block")
+    _, (mesh,) = run(rebounds(f"fix w all wall/ep mesh box.stl {HARD}\n", *words), folder)
+    touches = np.abs([column(out, f"f_w[{axis}]") for axis in (1, 2, 3)]).max(axis=0) > 0
+    assert np.count_nonzero(np.diff(touches.astype(int)) > 0) >= 3
+    for of in (slice(1, 4), slice(4, 7), slice(7, 10)):
+        assert np.abs(mesh[of] - block[of]).max() <= 1e-6 * np.abs(block[of]).max()
+
+
+def test_a_sphere_rolls_over_tiles_as_over_a_plane(tmp_path):
+    """It slides first, then rolls over 60 edges and corners."""
+    folder = tmp_path / "mesh"
+    folder.mkdir()
+    (folder / "floor.stl").write_text(stl_text("floor", tiles((-0.06, 0.06), (-0.02, 0.02), 60, 20)))
+    fall = "fix fall all gravity 9.81 vector 0 0 -1\n"
+    words = ((-0.05, 0.0, 0.99999 * R), "1 0.02 0", 60000, FRICTION, fall)
+    _, (plane,) = run(rebounds(f"fix w all wall/ep zplane 0 NULL {FRICTION}\n", *words), tmp_path / "plane")
+    out, (mesh,) = run(rebounds(f"fix w all wall/ep mesh floor.stl {FRICTION}\n", *words), folder)
+    assert mesh[1] > -0.01 and mesh[8] > 30 and (column(out, "f_w[3]")[1:] > 0).mean() > 0.5
+    for of in (slice(1, 4), slice(4, 7), slice(7, 10)):
+        assert np.abs(mesh[of] - plane[of]).max() <= 1e-6 * np.abs(plane[of]).max()
+
+
+def test_no_force_acts_past_a_ledge(tmp_path):
+    """A step: a sphere beside it falls from the height of its upper floor to the lower one; over the edge the force
+    points from the edge to the centre."""
+    low = -0.035
+    riser = [[(0, -0.05, 0), (0, 0.05, 0), (0, 0.05, low)], [(0, -0.05, 0), (0, 0.05, low), (0, -0.05, low)]]
+    step = [*tiles((-0.05, 0), (-0.05, 0.05), 3, 3), *riser, *tiles((0, 0.05), (-0.05, 0.05), 3, 3, low)]
+    (tmp_path / "step.stl").write_text(stl_text("step", np.array(step)))
+    wall = f"fix w all wall/ep mesh step.stl {FRICTION}\n"
+    out, ((_, x, _, z, *_),) = run(rebounds(wall, (1.001 * R, 0.0, 0.9 * R), "0 0 -1", 40000), tmp_path)
+    assert x == 1.001 * R and not column(out, "f_w[1]").any()
+    touching = np.flatnonzero(column(out, "f_w[3]"))
+    assert touching.size and 1e-5 * touching[0] == pytest.approx(0.9 * R - (low + R), abs=2e-5)
+    at = (0.6, 0.79)
+    out, _ = run(rebounds(wall, (at[0] * R, 0.0, at[1] * R), "0 0 0", 0), tmp_path)
+    force = np.array([column(out, f"f_w[{axis}]")[0] for axis in (1, 3)])
+    assert force[0] > 0 and force[0] / force[1] == pytest.approx(at[0] / at[1], rel=1e-9)
+
+
+def test_a_corner_has_a_contact_with_each_of_its_faces(tmp_path):
+    faces = box((-0.05, 0.05, -0.05, 0.05, -0.05, 0.05))
+    (tmp_path / "box.stl").write_text(stl_text("box", faces))
+    at = -0.05 + 0.999 * R
+    out, _ = run(rebounds(f"fix w all wall/ep mesh box.stl {FRICTION}\n", (at, at, at), "0 0 0", 0), tmp_path)
+    plane, _ = run(
+        rebounds(f"fix w all wall/ep zplane -0.05 NULL {FRICTION}\n", (0, 0, at), "0 0 0", 0), tmp_path / "p"
+    )
+    for axis in (1, 2, 3):
+        assert column(out, f"f_w[{axis}]")[0] == pytest.approx(column(plane, "f_w[3]")[0], rel=1e-9)
+
+
+MOTIONS = {
+    "linear": ("variable z equal 0.2*step*dt\n", "move NULL NULL v_z"),
+    "vibrate": ("variable z equal 0.002*sin(800*step*dt)\n", "move NULL NULL v_z"),
+    "rotate": ("variable t equal 20*step*dt\n", "rotate v_t 0.002 0 0 0 0.6 0.8"),
+    "both": (
+        "variable t equal 20*step*dt\nvariable x equal 0.1*step*dt\n",
+        "move v_x NULL NULL rotate v_t 0 0 0 0 0 1",
+    ),
+}
+
+
+@pytest.mark.parametrize(("kind", "ranks"), [*((kind, 1) for kind in MOTIONS), ("rotate", 2)])
+def test_a_box_of_triangles_moves_as_a_block(kind, ranks, tmp_path):
+    """Force, torque, power, and a sphere that the box throws about."""
+    variables, motion = MOTIONS[kind]
+    limits = (-0.02, 0.025, -0.022, 0.021, -0.018, 0.02)
+    folder = tmp_path / "mesh"
+    folder.mkdir()
+    (folder / "box.stl").write_text(stl_text("box", box(limits)))
+    region = f"region b block {' '.join(map(str, limits))} {motion} units box\nfix w all wall/ep/region b {FRICTION}\n"
+    mesh = f"fix w all wall/ep mesh box.stl {motion} {FRICTION}\n"
+    words = ((0.001, 0.002, 0.003), "0.9 -0.6 0.4", 30000)
+    power = END.replace("ke", "ke f_w[7]")
+    one, (a,) = run(variables + rebounds(region, *words).replace(END, power), tmp_path / "block", ranks=ranks)
+    two, (b,) = run(variables + rebounds(mesh, *words).replace(END, power), folder, ranks=ranks)
+    for name in ("f_w[1]", "f_w[2]", "f_w[3]", "f_w[5]", "f_w[7]"):
+        theirs = column(one, name)
+        assert np.abs(theirs).max() > 0
+        assert np.abs(column(two, name) - theirs).max() <= 1e-6 * np.abs(theirs).max(), name
+    assert np.abs(a - b).max() <= 1e-6 * np.abs(a).max()
+
+
+def binary(triangles, count=None):
+    rows = b"".join(struct.pack("<12fH", 0, 0, 0, *map(float, t.ravel()), 0) for t in triangles)
+    return b" " * 80 + struct.pack("<I", len(triangles) if count is None else count) + rows
+
+
+FLOOR = tiles((-0.0625, 0.0625), (-0.0625, 0.0625), 2, 2)
+
+
+def test_a_binary_file_and_a_text_in_capitals_are_read(tmp_path):
+    """Corners that floats hold: the same bits."""
+    found = []
+    for name, raw in {
+        "text": stl_text("f", FLOOR).encode(),
+        "binary": binary(FLOOR),
+        "capitals": stl_text("f", FLOOR).upper().encode(),
+    }.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "f.stl").write_bytes(raw)
+        _, rows = run(rebounds(f"fix w all wall/ep mesh f.stl {FRICTION}\n", (0, 0, R), "1 0 -1", 3000), folder)
+        found.append(rows)
+    assert found[0][0, 6] > 0
+    assert all(np.array_equal(found[0], rows) for rows in found[1:])
+
+
+TEXT = stl_text("f", FLOOR)
+FAULTS = {
+    "no such file": (None, "file f.stl: the file cannot be read"),
+    "cut": (binary(FLOOR, 9), "not an STL file: 484 bytes, where the 9 triangles of its header have 534"),
+    "not a number": (binary(FLOOR * [[[1, 1, np.nan]]]), "triangle 1 has corners that are not numbers"),
+    "a word": (TEXT.replace("vertex 0", "vertex o", 1).encode(), "a vertex needs three numbers"),
+    "two corners": (TEXT.replace("  vertex", "  corner", 1).encode(), "line 8: the triangle has not three corners"),
+    "half": (TEXT[: len(TEXT) // 2].encode(), "the text ends within a triangle"),
+    "none": (b"solid facet\nendsolid\n", "there are no triangles"),
+    "flat": (
+        stl_text("f", np.array([[[0, 0, 0], [1, 1, 0], [2, 2, 1e-9]]])).encode(),
+        "triangle 1 at (0, 0, 0) has no area",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", FAULTS)
+def test_a_damaged_file_is_one_sentence(what, tmp_path):
+    raw, sentence = FAULTS[what]
+    if raw is not None:
+        (tmp_path / "f.stl").write_bytes(raw)
+    code, out = lammps(rebounds(f"fix w all wall/ep mesh f.stl {FRICTION}\n", (0, 0, R), "0 0 0", 0), tmp_path)
+    assert code != 0 and "fix w wall/ep mesh: file f.stl: " in out and sentence in out, out[-500:]
+
+
+def test_a_wall_without_a_law_is_one_sentence(tmp_path):
+    (tmp_path / "f.stl").write_text(TEXT)
+    code, out = lammps(rebounds("fix w all wall/ep mesh f.stl move NULL NULL NULL\n", (0, 0, R), "0 0 0", 0), tmp_path)
+    assert code != 0 and "the law is missing behind the motion" in out
