@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from parts_cases import BED, CASES, FLOOR, own, parts
+from parts_cases import BED, CASES, FLOOR, own, parts, write_stl
 from scene_runs import run, write_case
 from test_parts_motions import PLATE, assert_the_lid_shakes_on, moved
 
@@ -173,6 +173,55 @@ def test_a_sphere_takes_the_way_of_liggghts_in_a_bowl_of_triangles_that_shakes(r
     for name in ("x", "z", "vy", "omega_x"):
         table = theirs.particles[name]
         assert np.abs(ours.particles[name] - table).max() <= 1e-6 * np.abs(table).max(), name
+
+
+FOOT = [(-0.012, 0.010, -0.008), (-0.004, 0.010, -0.008), (-0.008, 0.016, -0.008)]
+TOPS = [  # two triangles, a ridge between two slopes, a tip of three, all up to z = 0
+    [(-0.02, -0.02, 0), (0, -0.02, 0), (0, 0, 0)],
+    [(-0.02, -0.02, 0), (0, 0, 0), (-0.02, 0, 0)],
+    [(0.01, -0.01, 0), (0.01, 0.01, 0), (0.018, 0, -0.01)],
+    [(0.01, 0.01, 0), (0.01, -0.01, 0), (0.002, 0, -0.01)],
+    *([(-0.008, 0.012, 0), FOOT[k], FOOT[(k + 1) % 3]] for k in range(3)),
+]
+PLACES = {  # of a sphere above them [m]
+    "face": (-0.012, -0.006),
+    "common edge": (-0.01, -0.01),
+    "beside it": (-0.005, -0.005 + 1e-12),
+    "edge": (0.0, -0.012),
+    "corner of one": (0.0, -0.02),
+    "corner of two": (-0.02, -0.02),
+    "ridge": (0.01, 0.002),
+    "tip": (-0.008, 0.012),
+}
+
+
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize("law", ["thornton", "cavity", "jkr"])
+@pytest.mark.parametrize("shift", [0.0, 1e-4])
+def test_a_face_an_edge_and_a_corner_give_one_rebound_in_both_hosts(law, shift, tmp_path):
+    write_stl(tmp_path / "tops.stl", np.array(TOPS) + shift)
+    rows = [f"{x + shift!r},{y + shift!r},{1.501e-3 + shift!r},1.5e-3,glass,0,0,-1" for x, y in PLACES.values()]
+    (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *rows, ""]))
+    data = parts(
+        wall=[{"name": "tops", "kind": "stl", "file": "tops.stl", "material": "steel"}],
+        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        fill=[{"name": "table", "file": "spheres.csv"}],
+        phase=[{"name": "hit", "duration": "1 ms"}],
+    )
+    data["numerics"] = {"time_step": "2e-7 s"}
+    data["law"]["name"] = law
+    if law == "jkr":
+        data["materials"] = {name: x | {"surface_energy": "0.5 J/m^2"} for name, x in data["materials"].items()}
+    path = write_case(data, tmp_path)
+    ends = [
+        last_frame(run(path, engine=name, out=tmp_path / name).results.particles) for name in ("lammps", "liggghts")
+    ]
+    expected = ends[1]["vz"].iloc[0]
+    assert expected > 0.1
+    for end in ends:
+        for name, vz in zip(PLACES, end["vz"], strict=True):
+            assert vz == pytest.approx(expected, rel=1e-6), name
 
 
 def turned(axis):
