@@ -82,6 +82,18 @@ def test_candidates_give_the_bits_of_all_spheres(what, tmp_path):
         assert np.array_equal(column(some, value), column(every, value)), value
 
 
+def test_triangles_that_move_give_the_same_forces_on_two_ranks(tmp_path):
+    found = []
+    for ranks in (1, 2):
+        folder = tmp_path / str(ranks)
+        folder.mkdir()
+        (folder / "box.stl").write_text(stl_text("box", box((-0.014, 0.014, -0.014, 0.014, -0.014, 0.014))))
+        found.append(run(deck(WALLS["triangles that move"], 0), folder, ranks=ranks)[0])
+    for value in ("f_w[1]", "f_w[2]", "f_w[3]", "KinEng"):
+        one, two = (column(out, value) for out in found)
+        assert np.abs(one - two).max() <= 1e-9 * np.abs(one).max() > 0, value
+
+
 def peak_memory(walls, folder):
     """Peak memory [byte] of a run of 200,000 spheres above planes that no sphere touches."""
     law = f"{LAW.replace('thornton', 'cavity')} compaction on"
