@@ -95,6 +95,7 @@ NOT_DRAWN = {
     "Parts": {"key_figure": KINDS, "highest_fall": KINDS, "highest_drive": KINDS, "places": KINDS, "check": ALONE}
     | {"stages": "of a press: test_press.py"},
     "Stages": "of a press: test_press.py",
+    "Until": dict.fromkeys(("height", "density"), "of a plate that covers the room: test_ends_at_heights.py"),
     "FloorLoad": ALONE,
     "BedRebound": ALONE,
     "AtRest": ALONE,

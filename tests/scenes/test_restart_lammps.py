@@ -64,7 +64,7 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
     steps = restart_steps(tmp_path)[:-1]
     # a phase that its condition ends between two restart files has none at its end
     at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")} & {*steps}
-    assert len(steps) > 30 and len(at_ends) >= 3
+    assert len(steps) > 30 and len(at_ends) >= 2
     for step in sorted({*steps[3::18]} | at_ends):
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)

@@ -188,11 +188,12 @@ Time = Annotated[float, Quantity("s", above=0.0)]
 
 
 class Until(Frozen):
-    """Condition that ends a phase before its duration, tested in every row from `after` on (a tenth of the duration).
+    """Condition that ends a phase before its duration, tested from `after` on (a tenth of the duration; of a height or
+    density 0).
 
     kinetic_energy: of a sphere, the mean is below; a room without spheres waits for them. count: so few spheres are in
-    the room. force: mean force of a row on `wall` is reached; force_below: the force has fallen to it. travel: way of
-    `wall`, which moves with a constant velocity.
+    the room. force: the force on `wall` is reached; force_below: the force has fallen to it. travel: way of `wall`,
+    which moves with a constant velocity. height, density: of the bed that `wall` presses.
     """
 
     kinetic_energy: Annotated[float, Quantity("J", above=0.0)] | None = None
@@ -201,21 +202,29 @@ class Until(Frozen):
     force: Force | None = None
     force_below: Force | None = None
     travel: Annotated[float, Quantity("m", above=0.0)] | None = None
+    height: Annotated[float, Quantity("m", above=0.0)] | None = None
+    density: Annotated[float, Quantity("1", above=0.0, le=1.0)] | None = None
     after: Annotated[float, Quantity("s", ge=0.0)] | None = None
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        of_wall = (self.force, self.force_below, self.travel)
+        of_wall = (self.force, self.force_below, self.travel, self.height, self.density)
         if sum(x is not None for x in (self.kinetic_energy, self.count, *of_wall)) != 1:
-            raise ValueError("give one of kinetic_energy, count, force, force_below and travel")
+            raise ValueError("give one of kinetic_energy, count, force, force_below, travel, height and density")
         if (self.wall is None) != all(x is None for x in of_wall):
-            raise ValueError("'wall' belongs to force, force_below and travel, and only to them")
+            raise ValueError("'wall' belongs to force, force_below, travel, height and density, and only to them")
         return self
 
     @property
+    def of_bed(self) -> bool:
+        """Whether the height or density of a bed ends the phase."""
+        return self.height is not None or self.density is not None
+
+    @property
     def limit(self) -> float:
-        """The value of the one condition: [J], number of spheres, [N] or [m]."""
-        values = (self.kinetic_energy, self.count, self.force, self.force_below, self.travel)
+        """The value of the one condition: [J], number of spheres, [N], [m] or a relative density."""
+        of_wall = (self.force, self.force_below, self.travel, self.height, self.density)
+        values = (self.kinetic_energy, self.count, *of_wall)
         return float(next(x for x in values if x is not None))
 
 
@@ -238,8 +247,9 @@ class CasePhase(Frozen):
         if self.until and (self.until.after or 0.0) >= self.duration:
             raise ValueError("until.after must be below duration")
         linear = [m.wall for m in self.move if any(m.constant_velocity or ())]
-        if self.until and self.until.travel is not None and self.until.wall not in linear:
-            raise ValueError(f"until.travel: wall {self.until.wall!r} has no linear motion in this phase")
+        for key in ("travel", "height", "density"):
+            if self.until and getattr(self.until, key) is not None and self.until.wall not in linear:
+                raise ValueError(f"until.{key}: wall {self.until.wall!r} has no linear motion in this phase")
         return self
 
     @property
@@ -271,5 +281,6 @@ class CasePhase(Frozen):
     @property
     def condition_from(self) -> float:
         """Time in the phase from which the condition is evaluated [s]."""
-        after = None if self.until is None else self.until.after
-        return 0.1 * self.duration if after is None else after
+        if self.until and self.until.after is not None:
+            return self.until.after
+        return 0.0 if self.until and self.until.of_bed else 0.1 * self.duration

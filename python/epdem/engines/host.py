@@ -104,8 +104,10 @@ class Host(Engine[Any, Any]):
         return found
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        frames = Frames(job, folder, self.tables.kinds(job))
-        step, lost = choose(frames, folder / self.launcher.OUT)
+        out = folder / self.launcher.OUT
+        begun = job.with_ends(log.ends(out), held=log.held(out)) if job.ends_early else job
+        frames = Frames(begun, folder, self.tables.kinds(begun))
+        step, lost = choose(frames, out)
         written = frames.whole_at(step)
         script = self.resumed.write_resume(job, folder, step)
         self.start(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))

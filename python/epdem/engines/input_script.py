@@ -3,7 +3,8 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,9 +14,9 @@ from ..case.walls import PlateWall
 from ..errors import CaseError
 from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
-from ..scenes.limits import TOUCH, PressedBed
+from ..scenes.limits import TOUCH, PressedBed, bed_of, closing_speed
 from ..scenes.model import Model, Type
-from ..scenes.plan import LAG, MISS, SLOWING, PhaseSteps, ScenePlan
+from ..scenes.plan import LAG, MISS, ROUNDING, SLOWING, PhaseSteps, ScenePlan
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
@@ -114,8 +115,10 @@ class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
-    `nears`. missing: formula of the missing force over that at which the walls slow, "": they do not. share: of their
-    speed, at the begin of a phase or of a continued run. opposite: formula of the force on the wall against a punch.
+    `nears`; apart: these do not stop at rows. left: formula of the steps that are left to a height, "": no height is
+    awaited. missing: formula of the missing force over that at which the walls slow, "": they do not. share: of their
+    speed, at the begin of a phase or of a continued run. opposite, force: formulas of the force on the wall against a
+    punch and, where a height is awaited, on the punch.
     stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends
     the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
     """
@@ -129,9 +132,12 @@ class StopCondition:
     look: int = 0
     every: int = 0
     nears: bool = False
+    apart: bool = False
+    left: str = ""
     missing: str = ""
     share: str = "1.0"
     opposite: str = ""
+    force: str = ""
     stop: tuple[str, ...] = ()
     gone: int = 0
 
@@ -220,6 +226,9 @@ def stop_condition(
         formula, sign = "ke/(atoms+(atoms==0))+1e99*(atoms==0)", "<"  # a room without spheres waits for them
     elif until.count is not None:
         formula, sign = "atoms", "<="
+    elif until.of_bed:
+        whole = StopCondition(first, (run.steps - first) // p.every, "", "", void)
+        return _at_height(p, run, whole, place, force, stop)
     elif not run.stops:  # what shakes or is driven: the mean of a row
         load = f"f_load{1 + p.measured_walls.index(until.wall or '')}"
         formula = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")"
@@ -247,12 +256,70 @@ def stop_condition(
             look=LOOK if run.slows is not None else min(LOOK, p.every),
             every=p.every,
             nears=run.slows is None,
+            apart=run.slows is not None,
             missing="" if run.slows is None else missing,
             opposite=opposite,
             stop=tuple(stop),
         )
     rows, condition = (run.steps - first) // p.every, f"${{found}} {sign} {number(until.limit)}"
-    return StopCondition(first, rows, formula, condition, void, until.limit, p.every, p.every)
+    apart = until.wall is None
+    look = min(LOOK, p.every) if apart else p.every
+    return StopCondition(first, rows, formula, condition, void, until.limit, look, p.every, apart=apart)
+
+
+def _at_height(
+    p: ScenePlan,
+    run: PhaseSteps,
+    whole: StopCondition,
+    place: Callable[[PressedBed], str],
+    force: Callable[[str, int], str],
+    stop: Sequence[str],
+) -> StopCondition:
+    """How a phase ends at a height or density of a bed, one look after the steps that its plates need.
+
+    whole: the phase with the void of the bed alone. Other arguments as of `stop_condition`.
+    """
+    words, stages = height_words(p, run, place), p.scene.stages
+    opposite = of_punch = ""
+    if stages and words.wall == stages.wall:
+        opposite, of_punch = (f"abs({force(name, 1 + words.axis)})" for name in (stages.against, stages.wall))
+    return replace(
+        whole,
+        formula=words.value,
+        condition=f"${{found}} {words.comparison}",
+        limit=words.limit,
+        every=p.every,
+        apart=True,
+        left=words.left,
+        opposite=opposite,
+        force=of_punch,
+        stop=tuple(stop),
+    )
+
+
+class HeightWords(NamedTuple):
+    """A height or density that ends a phase: wall and axis of the press, formula of the value, comparison with which it
+    is reached, its limit, formula of the steps that are left."""
+
+    wall: str
+    axis: int
+    value: str
+    comparison: str
+    limit: float
+    left: str
+
+
+def height_words(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], str]) -> HeightWords:
+    """The height or density that ends a phase. place: formula of the height of a bed."""
+    bed, until = bed_of(p.pressed, run.case), run.case.condition
+    assert bed is not None and until is not None
+    height, limit = place(bed), until.limit
+    left = f"({height}-{number(until.height or bed.solid_height / limit)})"
+    left += f"/{number(closing_speed(bed, run.case) * run.time_step)}"
+    if until.height:
+        return HeightWords(bed.wall, bed.axis, height, f"<= {number(limit * (1.0 + ROUNDING))}", limit, left)
+    value = f"{number(bed.solid_height)}/{height}"
+    return HeightWords(bed.wall, bed.axis, value, f">= {number(limit * (1.0 - ROUNDING))}", limit, left)
 
 
 def press_speed(force: str, move: PressMove) -> str:

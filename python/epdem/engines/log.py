@@ -91,12 +91,13 @@ def ends(out: Path, upto: float = math.inf) -> dict[str, int]:
     return {name: int(step) for name, step in found if int(step) <= upto}
 
 
-def held(out: Path) -> dict[str, tuple[int, float, float]]:
-    """Of each phase with a condition the step at which it was last looked at, its value, the force on the opposite
-    wall of a press [N], else NaN."""
+def held(out: Path) -> dict[str, tuple[int, float, float, float]]:
+    """Of each phase with a condition the step at which it was last looked at, its value, the forces [N] on the opposite
+    wall of a press and, where a height or density was awaited, on its punch, else NaN."""
     text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
-    found = re.findall(r"^phase (\w+) held at step (\d+): (\S+)(?: (\S+))?", text, re.M)
-    return {name: (int(step), float(value), float(other or "nan")) for name, step, value, other in found}
+    found = re.findall(r"^phase (\w+) held at step (\d+): (\S+)(?: (\S+))?(?: (\S+))?$", text, re.M)
+    numbers = ((name, int(step), [float(x or "nan") for x in values]) for name, step, *values in found)
+    return {name: (step, value, opposite, force) for name, step, (value, opposite, force) in numbers}
 
 
 def ways(out: Path) -> dict[tuple[str, str], np.ndarray]:

@@ -56,11 +56,10 @@ def choose(frames: Frames, out: Path) -> tuple[int, list[int]]:
     CaseError if there is none at all.
     """
     p, folder = frames.plan, frames.folder
-    p = p.with_ends(log.ends(out), held=log.held(out)) if p.ends_early else p
     steps = [step for step in whole_restarts(folder, out) if step < p.steps]  # at the end nothing is left to run
     if not steps:
         raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
-    lost = replace(frames, plan=p).damaged(steps[-1])
+    lost = frames.damaged(steps[-1])
     before = [step for step in steps if not lost or step < lost[0]]
     step = (before or [step for step in steps if step == lost[0]] or steps)[-1]
     return step, [s for s in lost if s < step]

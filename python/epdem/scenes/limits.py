@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ..case.motions import FloatArray
 from ..case.parts import FileFill, Parts, Sphere
 from ..case.scene import SceneCase
-from ..case.walls import ConeWall, CylinderWall, MeshWall, PlateWall
+from ..case.walls import CasePhase, ConeWall, CylinderWall, MeshWall, PlateWall
 from ..errors import CaseError, EngineError
 from . import meshes
 from .filling import Insertion, mean_volume
@@ -297,6 +297,40 @@ def refuse_below_solid(beds: Iterable[PressedBed]) -> None:
             raise CaseError(
                 f"{bed.key} = {bed.height:.4g} m: the spheres alone, without any void, are {bed.solid_height:.4g} m "
                 f"high (sum of their volumes over {bed.area:.4g} m^2); give a larger height, or fewer spheres"
+            )
+
+
+def bed_of(beds: Iterable[PressedBed], phase: CasePhase) -> PressedBed | None:
+    """The bed that the wall of the condition of a phase presses in it."""
+    wall = phase.until.wall if phase.until else None
+    return next((bed for bed in beds if (bed.phase, bed.wall) == (phase.name, wall) and bed.solid_height > 0.0), None)
+
+
+def closing_speed(bed: PressedBed, phase: CasePhase) -> float:
+    """Speed [m/s] at which a bed becomes lower while its plate moves at its constant velocity."""
+    along = (phase.moves[name].along[bed.axis] if name in phase.moves else 0.0 for name in (bed.wall, bed.against))
+    plate, against = along
+    return bed.sign * (plate - against)
+
+
+def refuse_heights(scene: Parts, beds: Sequence[PressedBed]) -> None:
+    """Raise CaseError for a phase that ends at a height or density that its wall does not press a bed to."""
+    for phase in scene.phase:
+        if not (phase.until and phase.until.of_bed):
+            continue
+        bed, key = bed_of(beds, phase), "height" if phase.until.height else "density"
+        place = f"scene.phase.{phase.name}.until.{key}"
+        if any(move.constant_velocity is None for move in phase.moves.values()):
+            raise CaseError(f"{place}: each wall that moves in this phase moves linearly; give another condition")
+        if bed is None or closing_speed(bed, phase) <= 0.0:
+            raise CaseError(
+                f"{place}: wall {phase.until.wall} presses no bed in this phase: a bed is pressed by a plate that "
+                "covers the room or a tube and moves towards its spheres; name another wall, or give travel"
+            )
+        if phase.until.density == 1.0 or (phase.until.height and phase.until.height <= bed.solid_height):
+            raise CaseError(
+                f"{place} = {phase.until.limit:g}: no void would be left; the spheres alone are "
+                f"{bed.solid_height:.4g} m high; give a height above it, or a density below 1"
             )
 
 

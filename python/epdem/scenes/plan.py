@@ -29,6 +29,7 @@ from .limits import (
     refuse_bodies_in_walls,
     refuse_combinations,
     refuse_faster_than_sound,
+    refuse_heights,
     refuse_outside,
     refuse_positions,
     refuse_steps,
@@ -57,8 +58,9 @@ class Phase:
     or one with which the duration is a whole number of rows.
 
     held: the step at which `until` held, from which on its walls rest; None: before a run, or without. value, opposite:
-    what was awaited at that step, and of a press the force [N] on the wall against the punch. slowed: of a phase that
-    slows, steps of rows, and how long [s] its walls would have moved at full speed to come as far; before a run empty.
+    what was awaited at that step, and of a press the force [N] on the wall against the punch; force: on the punch,
+    where a height or density was awaited. slowed: of a phase whose walls a condition stops, steps of rows, and how long
+    [s] its walls would have moved at full speed to come as far; before a run empty.
     gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
     or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
     """
@@ -71,22 +73,29 @@ class Phase:
     held: int | None = None
     value: float = math.nan
     opposite: float = math.nan
+    force: float = math.nan
     slowed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
 
     @property
     def slows(self) -> int | None:
         """Axis of the largest velocity of the wall whose force ends the phase: all its walls slow as the force comes
         near, see SLOWING; None: no such wall moves, or not all motions are linear."""
+        return None if self.case.condition and self.case.condition.of_bed else self.measured
+
+    @property
+    def measured(self) -> int | None:
+        """The same of a wall whose force, height or density ends the phase: its way is known in the run alone."""
         condition = self.case.condition
         velocity = np.abs(self.velocity(condition.wall or "")) if condition and self.stops else np.zeros(3)
         return int(velocity.argmax()) if velocity.any() else None
 
     @property
     def stops(self) -> bool:
-        """Whether the walls rest from the step on at which a force is reached; the phase ends with the row."""
+        """Whether the walls rest from the step on at which a force, height or density is reached; the phase ends with
+        the row."""
         condition = self.case.condition
-        of_force = condition is not None and condition.wall is not None
-        return of_force and all(move.constant_velocity for move in self.moves.values())
+        of_wall = condition is not None and condition.wall is not None
+        return of_wall and all(move.constant_velocity for move in self.moves.values())
 
     @property
     def name(self) -> str:
@@ -219,11 +228,11 @@ class ScenePlan:
         self,
         ends: Mapping[str, int],
         reached: Mapping[str, str] = MappingProxyType({}),
-        held: Mapping[str, tuple[int, float, float]] = MappingProxyType({}),
+        held: Mapping[str, tuple[int, float, float, float]] = MappingProxyType({}),
     ) -> "ScenePlan":
         """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it.
 
-        held: step at which the condition was last looked at, its value, the force on the opposite wall.
+        held: step at which the condition was last looked at, its value, the forces on the opposite wall and the punch.
 
         reached: NOT_REACHED of the phases that ended by their duration although they have a condition; NO_VOID of a
         phase that ended the run, so that the phases behind it have no step.
@@ -235,15 +244,16 @@ class ScenePlan:
             end = phases[-1].end if solid else ends.get(phase.name, phase.end + shift)
             shift = end - phase.end
             word = NO_VOID if solid else reached.get(phase.name, REACHED if phase.case.condition else phase.reached)
-            step, value, opposite = held.get(phase.name, (phase.held, phase.value, phase.opposite))
-            phases.append(replace(phase, end=end, reached=word, held=step, value=value, opposite=opposite))
+            names = ("held", "value", "opposite", "force")
+            known = dict(zip(names, held.get(phase.name, [getattr(phase, name) for name in names]), strict=True))
+            phases.append(replace(phase, end=end, reached=word, **known))
         return replace(self, phases=tuple(phases))
 
     def with_ways(self, rows: pd.DataFrame) -> "ScenePlan":
-        """The plan of a run, with the ways of walls that slowed, from columns WALL_way_AXIS [m] of its rows."""
+        """The plan of a run, with the ways of walls that a condition stops: WALL_way_AXIS [m] of its rows."""
         phases, begin = [], 0
         for phase in self.phases:
-            k, condition = phase.slows, phase.case.condition
+            k, condition = phase.measured, phase.case.condition
             if k is not None and condition:
                 part = rows[rows["step"].between(begin, phase.end)]
                 way = part[f"{condition.wall}_way_{'xyz'[k]}"].to_numpy()
@@ -255,8 +265,8 @@ class ScenePlan:
 
     @property
     def ways(self) -> list[tuple[str, int]]:
-        """(wall, axis) of the ways that a run measures, because the walls slow."""
-        found = [(x.case.condition.wall, k) for x in self.phases if x.case.condition and (k := x.slows) is not None]
+        """(wall, axis) of the ways that a run measures, because a condition stops the walls."""
+        found = [(x.case.condition.wall, k) for x in self.phases if x.case.condition and (k := x.measured) is not None]
         return [(wall, k) for wall, k in dict.fromkeys(found) if wall]
 
     @property
@@ -288,8 +298,8 @@ class ScenePlan:
         names = [phase.name for phase in self.phases]
         table = {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
         held = [phase.end if phase.held is None else phase.held for phase in self.phases]
-        more = {"held": held, "value": [x.value for x in self.phases], "opposite": [x.opposite for x in self.phases]}
-        return pd.DataFrame(table | {"until": [phase.reached for phase in self.phases]} | more)
+        looked = {name: [getattr(x, name) for x in self.phases] for name in ("value", "opposite", "force")}
+        return pd.DataFrame(table | {"until": [phase.reached for phase in self.phases], "held": held} | looked)
 
     def time_at(self, steps: np.ndarray) -> np.ndarray:
         """Times [s] of steps."""
@@ -462,7 +472,8 @@ def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
     measure, and those that a force drives."""
     gates = {w.name for w in scene.gates}
     loads = {w.name for w in scene.wall} - gates if case.output.loads and not scene.row else set()
-    loads |= {p.condition.wall for p in scene.phase if p.condition and p.condition.wall}
+    conditions = [p.condition for p in scene.phase if p.condition and not p.condition.of_bed]
+    loads |= {c.wall for c in conditions if c.wall}
     loads |= {m.wall for m in scene.measure if isinstance(m, Load)}
     loads |= {m.wall for p in scene.phase for m in p.move if m.press}
     return tuple(w.name for w in scene.wall if w.name in loads)
@@ -484,6 +495,7 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_missing(case)
     beds = tuple(pressed_beds(case, scene, filled))
     refuse_below_solid(beds)
+    refuse_heights(scene, beds)
     density = largest_density(scene, beds)
     dt = time_step(case, density)
     duration = sum(phase.seconds for phase in scene.phase)

@@ -187,9 +187,8 @@ def _as_run(p: ScenePlan, tables: Tables) -> ScenePlan:
         return p
     phases = tables["phases"]
     ends = dict(zip(phases["phase"], phases["end"].astype(int), strict=True))
-    looked = zip(
-        phases["held"].astype(int), phases["value"].astype(float), phases["opposite"].astype(float), strict=True
-    )
+    forces = (phases[name].astype(float) for name in ("value", "opposite", "force"))
+    looked = zip(phases["held"].astype(int), *forces, strict=True)
     held = {x.name: at for x, at in zip(p.phases, looked, strict=True) if x.case.condition}
     return p.with_ends(ends, dict(zip(phases["phase"], phases["until"], strict=True)), held).with_ways(tables["rows"])
 

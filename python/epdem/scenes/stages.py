@@ -83,7 +83,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     asked = [c.force for c in conditions if c and c.wall == stages.wall]
     found["asked"] = math.nan
     found.loc[of_punch, "asked"] = [math.nan if x is None else x / stages.area for x in asked]
-    value, opposite = (chosen[name].to_numpy(float) / stages.area for name in ("value", "opposite"))
+    forces = (chosen["force"].fillna(chosen["value"]), chosen["opposite"])
+    value, opposite = (force.to_numpy(float) / stages.area for force in forces)
     known = of_punch & np.isfinite(value)  # not where a bed without void has ended the run, maybe within a row
     found["pressure"] = np.where(known, value, rows[stages.pressure].reindex(ends, method="ffill"))
     found["opposite_pressure"] = np.where(known, opposite, rows[stages.opposite].reindex(ends, method="ffill"))

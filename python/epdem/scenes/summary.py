@@ -92,8 +92,8 @@ def results(p: ScenePlan, tables: Tables) -> list[str]:
             at = "" if row["kind"].endswith(", mean") else f" at {row['time [s]']:.4g} s"
             said.append(f"{row['measure']} ({row['kind']}): {value}{at}.")
     if "stages" in tables:
-        known = tables["stages"][tables["stages"]["asked"].notna()]
-        ends = [f"{d:.3f} at {in_words(x, 'Pa')}" for d, x in known[["relative_density", "reached"]].to_numpy()]
+        known = stages.loaded(p, tables["stages"])
+        ends = [f"{d:.3f} at {in_words(x, 'Pa')}" for d, x in known[["relative_density", "pressure"]].to_numpy()]
         back = tables["stages"]["springback"].dropna()
         percent = ", ".join(f"{100.0 * x:.3g}" for x in back)
         said.append(f"Relative density: {', '.join(ends)}." + f" Springback: {percent} %." * bool(percent))

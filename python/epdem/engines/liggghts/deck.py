@@ -226,7 +226,7 @@ def deck(p: ScenePlan) -> SceneDeck:
 
 def _looks_at_primitives(commands: Sequence[DeckPhase]) -> bool:
     """Whether a condition needs a sum over spheres, which LIGGGHTS has at a step only if its thermo line has it."""
-    return any("c_load" in x.stop.formula + x.stop.opposite for x in commands if x.stop)
+    return any("c_load" in x.stop.formula + x.stop.opposite + x.stop.force for x in commands if x.stop)
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -5,7 +5,6 @@ import math
 import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,10 +15,11 @@ from ...case.walls import BoxWall, PlaneWall, PlateWall
 from ...jobs.engine import Unsupported
 from ...scenes import placement
 from ...scenes.filling import Insertion
+from ...scenes.limits import PressedBed
 from ...scenes.meshes import spans, surface_rotation
 from ...scenes.plan import LAG, SLOWING, Phase, PhaseSteps, ScenePlan
 from ..host import words_of_motion
-from ..input_script import BORNE, bed_height, ended_at, first_look, torque_origin, wanted_share
+from ..input_script import BORNE, bed_height, ended_at, first_look, height_words, torque_origin, wanted_share
 
 EDGES = (
     "walls of triangles ({}): YADE counts a sphere that touches an edge once for each triangle there, so that its "
@@ -202,7 +202,8 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 class Stop:
     """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the
     force on the opposite wall; limit: of the value, 0 where rows alone are looked at; walls: that rest from then on;
-    missing: formula of the missing force over that at which the walls slow, "": they do not."""
+    missing: formula of the missing force over that at which the walls slow, "": they do not. left: formula of the steps
+    that are left to a height, "": no height is awaited; force: formula of the force on a punch there."""
 
     value: str
     condition: str
@@ -211,6 +212,8 @@ class Stop:
     limit: float = 0.0
     walls: tuple[str, ...] = ()
     missing: str = ""
+    left: str = ""
+    force: str = ""
 
     @property
     def wanted(self) -> str:
@@ -234,6 +237,8 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
         return Stop(energy, f"< {limit}", after)
     if until.count is not None:
         return Stop('row["particles"]', f"<= {limit}", after)
+    if until.of_bed:
+        return _at_height(p, run, after)
     value, opposite = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])', ""
     stages = p.scene.stages
     if stages and until.wall == stages.wall:
@@ -248,15 +253,25 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
     return Stop(value, condition, after, opposite, until.limit, tuple(run.moves), missing * (run.slows is not None))
 
 
+def _at_height(p: ScenePlan, run: PhaseSteps, after: int) -> Stop:
+    """How a phase ends at a height or density of a bed, one look after the steps that its plates need."""
+    words, stages = height_words(p, run, _height), p.scene.stages
+    opposite = force = ""
+    if stages and words.wall == stages.wall:
+        opposite, force = (f'abs(row["{name}_force_{"xyz"[words.axis]}"])' for name in (stages.against, stages.wall))
+    walls = tuple(run.moves)
+    return Stop(words.value, words.comparison, after, opposite, words.limit, walls, left=words.left, force=force)
+
+
+def _height(bed: PressedBed) -> str:
+    """Formula of the height of a bed."""
+    return bed_height(bed, lambda name: f'O.bodies[walls["{name}"][0]].state.pos[{bed.axis}]')
+
+
 def void(p: ScenePlan, phase: str) -> str:
     """Formula of the height of the void in the bed that is pressed in a phase; "": no bed is."""
-    beds = [bed for bed in p.pressed if bed.phase == phase]
-
-    def place(axis: int, name: str) -> str:
-        return f'O.bodies[walls["{name}"][0]].state.pos[{axis}]'
-
-    heights = (f"{bed_height(bed, partial(place, bed.axis))}-{decks.number(bed.solid_height)}" for bed in beds)
-    return next(heights, "")
+    beds = (bed for bed in p.pressed if bed.phase == phase)
+    return next((f"{_height(bed)}-{decks.number(bed.solid_height)}" for bed in beds), "")
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Phases of a scene in YADE, and its output: rows on the screen, frames and contact tables in files."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -134,10 +135,13 @@ class Recorder:
         self._limit = 0.0
         self._stops: Sequence[int] | None = None
         self._missing: Callable[[dict[str, float]], float] | None = None
+        self._left: Callable[[], float] | None = None
+        self._force: Callable[[dict[str, float]], float] | None = None
         self._full: list[Any] | None = None  # velocities of walls that slow
         self._wanted: Callable[[float], float] = float
         self._lag, self._share = 1, 1.0
-        self._held, self._value, self._other = -1, 0.0, 0.0  # step at which the condition held, what it held at
+        self._held, self._value = -1, 0.0  # step at which the condition held, what it held at
+        self._other, self._bearing = 0.0, 0.0
         self._came = 0  # spheres at the end of the phase before
         self._void: Callable[[], float] | None = None
         self._looked = 0
@@ -155,6 +159,8 @@ class Recorder:
         until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None,
         opposite: Callable[[dict[str, float]], float] | None = None,
         stops: Sequence[int] | None = None,
+        left: Callable[[], float] | None = None,
+        force: Callable[[dict[str, float]], float] | None = None,
         missing: Callable[[dict[str, float]], float] | None = None,
         wanted: Callable[[float], float] = float,
         lag: int = 1,
@@ -164,10 +170,11 @@ class Recorder:
     ) -> None:
         """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, which
         is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
-        that rest from then on, where `look` looks at the condition, without it each row does; missing: force over that
-        at which these bodies slow, without it they do not; wanted: the share of their speed that they come to have
-        within `lag` steps; limit: of the value, near which looks are frequent; void: height of the void in a pressed
-        bed [m], whose loss ends the run with a frame and a table.
+        that rest from then on, where `look` looks at the condition, without it each row does; left: steps to the height
+        that is awaited, force: on the punch there; missing: force over that at which these bodies slow, without it they
+        do not; wanted: the share of their speed that they come to have within `lag` steps; limit: of the value, near
+        which looks are frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame
+        and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
@@ -175,7 +182,7 @@ class Recorder:
         self._begin, self._end = self._end, self._end + steps
         self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
         self._opposite, self._stops, self._limit, self._held = opposite, stops, limit, -1
-        self._missing, self._full = missing, None
+        self._missing, self._full, self._left, self._force = missing, None, left, force
         self._wanted, self._lag, self._share = wanted, lag, 1.0
         if until is None and void is None:
             while O.iter < self._end:
@@ -191,7 +198,7 @@ class Recorder:
         if until and not self._reached:
             print(f"phase {name} was not ended by its condition")
         if until:
-            other = f" {self._other:.10g}" if opposite else ""
+            other = f" {self._other:.10g}" * bool(opposite) + f" {self._bearing:.10g}" * bool(force)
             step = self._held if self._held >= 0 else self._end
             print(f"phase {name} held at step {step}: {self._value:.10g}{other}")
         print(f"phase {name} ended at step {self._end}", flush=True)
@@ -269,6 +276,8 @@ class Recorder:
         steps = min(LOOK, int(self.every - O.iter % self.every))
         if self._stops is None or self._held >= 0 or O.iter <= self._looked:
             return steps
+        if self._left and (left := self._left()) > 1e-6:
+            return math.ceil(left - 1e-6)
         row = dict(zip(self.means, self.on_walls().tolist(), strict=True))
         if self._missing:
             if O.iter % LOOK == 0:
@@ -293,7 +302,7 @@ class Recorder:
             return
         value, holds = self._until
         self._value = float(value(row))
-        self._other = float(self._opposite(row)) if self._opposite else 0.0
+        self._other, self._bearing = (float(x(row)) if x else 0.0 for x in (self._opposite, self._force))
         if holds(self._value):
             self._held = O.iter
             self._rest()

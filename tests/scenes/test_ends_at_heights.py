@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A phase ends at the height or density of a bed, and at an energy or number of spheres between two rows."""
+
+import math
+
+import pytest
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+from test_ends_of_phases import BOX, DOWN, ENGINES, LID
+from test_press import COUNT, RADIUS, SIDE, plate, press, without
+
+from epdem.case.scene import parse
+from epdem.errors import CaseError
+from epdem.scenes import summary
+from epdem.scenes.plan import plan
+
+SOLID = COUNT * 4 / 3 * math.pi * RADIUS**3 / SIDE**2  # height [m] of the spheres of the press without void
+DECKS = [ENGINES[0], ENGINES[2]]  # that look between rows at energies and numbers
+
+
+def to_bed(**scene):
+    """The press to heights or densities of the bed."""
+    return without(press(release_pressure="0.2 MPa", hold="5 us", **scene), "stages")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_stages_end_at_the_step_at_which_the_bed_has_its_density(engine, tmp_path):
+    """The plates of the frames, by the spheres that touch them: within the way of the punch in a step."""
+    data = to_bed(densities=[0.6, 0.75])
+    data["output"]["rows"] = 150  # far from a step
+    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    found, phases = (outcome.results.tables[name].set_index("phase") for name in ("stages", "phases"))
+    step = 3.0 * outcome.plan.time_step
+    assert outcome.passed and (phases["until"].drop(["hold1", "hold2"]) == "reached").all()
+    for name, density in (("stage1", 0.6), ("stage2", 0.75)):
+        there = plate(outcome, "punch", phases["end"][name])
+        assert SOLID / density - 1.01 * step < there <= SOLID / density * (1 + 1e-9)
+        assert found["height"][name] == pytest.approx(there, rel=1e-6) and phases["held"][name] < phases["end"][name]
+        assert phases["value"][name] == pytest.approx(SOLID / there, rel=1e-6)
+        # the bed relaxes in the hold, up to which the pressure has risen
+        assert found["peak"][name] == found["pressure"][name] > found["pressure"][f"hold{name[-1]}"]
+        assert found["opposite_pressure"][name] == pytest.approx(found["pressure"][name], rel=0.15)
+        assert found["pressure"][f"release{name[-1]}"] <= 1.01 * 0.2e6
+    said = " ".join(summary.results(outcome.plan, outcome.results.tables))
+    assert f"Relative density: 0.600 at {1e-6 * found['pressure']['stage1']:.4g} MPa, 0.750 at " in said
+    assert found["asked"].isna().all() and found["springback"]["release2"] > 0.01
+
+
+@pytest.mark.parametrize("engine", DECKS)
+def test_two_punches_stop_at_the_height_between_them(engine, tmp_path):
+    """Between restart files, at which the run stops for a moment."""
+    data = to_bed(heights=["0.4 mm"], double_action=True)
+    data["output"] |= {"rows": 150, "restarts": 7}
+    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    phases = outcome.results.phases.set_index("phase").loc["stage1"]
+    high, low = (plate(outcome, name, phases["end"]) for name in ("punch", "floor"))
+    assert 0.4e-3 - 1.01 * 3.0 * outcome.plan.time_step < high - low <= 0.4e-3 * (1 + 1e-9)
+    assert phases["value"] == pytest.approx(high - low, rel=1e-6)
+
+
+@pytest.mark.liggghts
+def test_a_press_to_a_density_and_one_to_the_pressure_found_there_agree(tmp_path):
+    """The plate slows near a pressure and not near a density."""
+    data = to_bed(densities=[0.7], speed="1 m/s")
+    found = run(write_case(data, tmp_path / "a"), out=tmp_path / "a/out").results.stages.iloc[0]
+    again = without(press(stages=[f"{found['pressure']:.9g} Pa"], speed="1 m/s"), "hold")
+    other = run(write_case(again, tmp_path / "b"), out=tmp_path / "b/out").results.stages.iloc[0]
+    assert other["relative_density"] == pytest.approx(found["relative_density"], abs=0.004)
+
+
+def lid(**until):
+    """A lid over a bed in a box that covers the room, and a phase with a condition."""
+    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "14 mm"]}}
+    cover = LID | {"size": ["20 mm", "20 mm"]}
+    down = {"name": "press", "duration": "0.15 s", "until": {"wall": "lid"} | until, "move": [DOWN]}
+    return parts(wall=[FLOOR, cover], fill=[bed], phase=[{"name": "fall", "duration": "31 ms"}, down])
+
+
+REFUSED = [
+    (to_bed(heights=["0.4 mm"], densities=[0.5]), "give one of stages, heights and densities"),
+    (without(press(), "stages"), "give one of stages, heights and densities"),
+    (without(press(densities=[0.7]), "stages"), "release_pressure: a press to heights or densities"),
+    (to_bed(densities=[0.7, 0.6], release=False), "densities: 0.6 is reached already"),
+    (to_bed(heights=["0.4 mm", "0.5 mm"], release=False), "heights: 0.0005 is reached already"),
+    (to_bed(densities=[1.0]), "no void would be left"),
+    (to_bed(heights=["0.31 mm"]), "no void would be left; the spheres alone are 0.0003142 m"),
+    (lid(height="4 mm") | {"scene": lid(height="4 mm")["scene"] | {"open_boundary": True}}, "lid presses no bed"),
+]
+
+
+@pytest.mark.parametrize(("data", "words"), REFUSED, ids=[words for _, words in REFUSED])
+def test_heights_that_no_plate_reaches_are_refused_in_a_sentence(data, words):
+    with pytest.raises(CaseError, match=words) as error:
+        plan(parse(data))
+    assert "\n" not in str(error.value)
+
+
+def falls(rows, until):
+    """A bed that comes to rest, or that leaves the room through its open floor."""
+    data = parts(wall=[BOX | {"open": ["+z", "-z"]}, *([] if "count" in until else [FLOOR])])
+    data["scene"]["phase"] = [
+        {"name": "fall", "duration": "0.4 s", "until": until | {"after": "0 s"}},
+    ]
+    return data | {"output": {"rows": rows, "particles": 1}, "numerics": {"time_step": "1e-5 s"}}
+
+
+@pytest.mark.parametrize("until", [{"kinetic_energy": "20 nJ"}, {"count": 30}], ids=["energy", "count"])
+@pytest.mark.parametrize("engine", DECKS)
+def test_an_energy_and_a_number_of_spheres_are_looked_at_between_rows(engine, until, tmp_path):
+    """The same step for long rows of two lengths, and the first in rows of 100 steps at which the condition holds."""
+    held = []
+    for steps in (1000, 700, 100):
+        outcome = run(
+            write_case(falls(40000 // steps, until), tmp_path / f"{steps}"), engine, out=tmp_path / f"{steps}/out"
+        )
+        found = outcome.results.phases.set_index("phase").loc["fall"]
+        assert found["until"] == "reached" and found["end"] - found["held"] < outcome.plan.every
+        held.append((found["held"], found["value"]))
+    assert outcome.plan.every == 100
+    rows = outcome.results.rows[outcome.results.rows["step"] > 0]
+    energy = rows["kinetic_energy"] / rows["particles"]
+    holds = energy < 20e-9 if "kinetic_energy" in until else rows["particles"] <= 30
+    assert held[0] == held[1] == held[2] and held[0][0] == rows[holds.to_numpy()]["step"].iloc[0]
+    last = rows.set_index("step").loc[held[0][0]]
+    expected = last["kinetic_energy"] / last["particles"] if "kinetic_energy" in until else last["particles"]
+    assert held[0][1] == pytest.approx(expected, rel=1e-6)
