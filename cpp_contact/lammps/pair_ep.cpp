@@ -47,7 +47,7 @@ std::vector<char*> words_of_text(std::vector<std::string>& words) {
 
 /// A fix in place of the history's keeps the history before the fixes of the deck: those may add atoms.
 PairEp::PairEp(LAMMPS* lmp) : Pair(lmp), block_(std::make_unique<kernels::Block>()) {
-  single_extra = 9;
+  single_extra = 11;
   svector = single_;
   no_virial_fdotr_compute = 1;
   centroidstressflag = CENTROID_NOTAVAIL;
@@ -316,7 +316,7 @@ double* PairEp::history_of(int i, int j) const {
 
 double PairEp::single(int i, int j, int, int, double rsq, double, double, double& fforce) {
   fforce = 0.0;
-  std::fill_n(single_, 9, 0.0);
+  std::fill_n(single_, 11, 0.0);
   const double sum = atom->radius[i] + atom->radius[j], r = std::sqrt(rsq), overlap = sum - r;
   const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
   const bool recent = known && history_->now() - known[layout_.last_step] <= 1.0;
@@ -343,6 +343,8 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   if (layout_.gap.growth >= 0) {
     single_[4] = added_overlap_of(history.data() + layout_.gap.growth);
     single_[5] = screening_of(history.data() + layout_.gap.growth);
+    single_[9] = grown_overlap_of(history.data() + layout_.gap.growth);
+    single_[10] = body_pressure_of(history.data() + layout_.gap.growth);
   }
   for (int axis = 0; axis < 3; ++axis) single_[6 + axis] = b.force[axis].a[0];
   return b.stored_energy.a[0];

@@ -25,7 +25,8 @@ class PairEp : public LAMMPS_NS::Pair {
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
   /// Elastic energy of a contact, normal force over distance; svector: overlap, largest overlap, contact radius,
-  /// whether the bodies touch or are attached, overlap that growth adds, screening, force on i.
+  /// whether the bodies touch or are attached, overlap that growth adds, screening, force on i; of that overlap the
+  /// growth of the bodies, their pressure.
   double single(int i, int j, int itype, int jtype, double rsq, double, double, double& fforce) override;
   void write_restart(FILE* file) override;
   void read_restart(FILE* file) override;
@@ -76,7 +77,7 @@ class PairEp : public LAMMPS_NS::Pair {
   int place_[kernels::block_size + kernels::most_lanes];  // in the list
   std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
   int frozen_ = 0;                 // group bit
-  double single_[9];               // svector
+  double single_[11];              // svector
 };
 
 }  // namespace epdem::lammps

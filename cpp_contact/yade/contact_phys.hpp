@@ -24,6 +24,10 @@ class EpPhys : public FrictPhys {
           [](EpPhys& p) { return p.addedOverlap(); });
       add(python, "screening", "elastic recovery over that of the contact alone, with compaction; 0: a new contact",
           [](EpPhys& p) { return p.screening(); });
+      add(python, "grownOverlap", "overlap [m] of addedOverlap by the dents of other contacts",
+          [](EpPhys& p) { return p.grownOverlap(); });
+      add(python, "bodyPressure", "pressure [Pa] of the bodies that their growth carries, with compaction",
+          [](EpPhys& p) { return p.bodyPressure(); });
       for (int k = 0; k < iy::parameter_count; ++k)
         if (iy::is_first(k)) {
           const epdem::Parameter& p = *iy::parameters[k].declared;
@@ -77,6 +81,8 @@ class EpPhys : public FrictPhys {
   }
   double addedOverlap() const { return growthAt() < 0 ? 0.0 : epdem::added_overlap_of(&history[growthAt()]); }
   double screening() const { return growthAt() < 0 ? 0.0 : epdem::screening_of(&history[growthAt()]); }
+  double grownOverlap() const { return growthAt() < 0 ? 0.0 : epdem::grown_overlap_of(&history[growthAt()]); }
+  double bodyPressure() const { return growthAt() < 0 ? 0.0 : epdem::body_pressure_of(&history[growthAt()]); }
 
   boost::python::dict pyDictCustom() const override {
     namespace iy = epdem::in_yade;

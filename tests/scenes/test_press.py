@@ -321,13 +321,18 @@ def round_die(particles, folder, engine, walls="powder"):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_the_energies_of_two_powders_in_a_round_die_close_and_the_mixture_lies_between_them(engine, tmp_path):
-    """A soft sphere between hard ones is not softer than between soft ones; triangles of a wall take no energy."""
+    """A soft sphere between hard ones is not softer than between soft ones; triangles of a wall take no energy.
+
+    The force of the law in the table of contacts is that of the engine."""
     half = [{"material": name, "radius": "50 um", "share": 0.5} for name in ("powder", "soft")]
     density = []
     for n, (particles, walls) in enumerate([(half[:1], "powder"), (half, "powder"), (half[1:], "soft")]):
         outcome = round_die([p | {"share": 1.0 / len(particles)} for p in particles], tmp_path / f"{n}", engine, walls)
         balance = outcome.results.tables["energy_balance"]
         assert balance["balance"].abs().max() < 4e-3 * balance["work"].max()
+        contacts = outcome.results.contacts
+        of_engine = np.linalg.norm(contacts[["force_x", "force_y", "force_z"]], axis=1)
+        np.testing.assert_allclose(contacts["force"], of_engine, rtol=1e-8, atol=1e-9 * of_engine.max())
         density.append(outcome.results.tables["stages"]["relative_density"].iloc[0])
     assert density[0] < density[1] < density[2]
 

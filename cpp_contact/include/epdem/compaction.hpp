@@ -78,7 +78,7 @@ template <class T>
 struct GrowthState {
   static constexpr const char* slots[] = {"step_overlap", "added_overlap", "screened_overlap", "raw_screening",
                                           "screening",    "own_growth",    "dented_area",      "unstored_work",
-                                          "step_growth",  "growth",        "step_pressure",    "pressure"};
+                                          "step_growth",  "grown_overlap", "step_pressure",    "body_pressure"};
   T last;           // u + q of the sums of the step before [m]
   T added;          // v [m]: u + q extrapolated to the step
   T shift;          // q [m]
@@ -99,6 +99,10 @@ inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double
 inline double added_overlap_of(const double* state) noexcept { return state[1]; }
 /// gamma of the same; 0: a new contact.
 inline double screening_of(const double* state) noexcept { return state[4]; }
+/// u [m], in v, of the same.
+inline double grown_overlap_of(const double* state) noexcept { return state[9]; }
+/// P [Pa] of the same.
+inline double body_pressure_of(const double* state) noexcept { return state[11]; }
 
 /// A contact that grows, in one step.
 template <bool wall, class T>

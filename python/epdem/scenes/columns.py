@@ -27,11 +27,11 @@ UNITS = quantities.UNITS | {  # of the columns that have one
     column: unit
     for unit, columns in {
         "s": "begin_time end_time",
-        "m": "overlap added_overlap contact_radius delta_max residual_overlap dent_radius wear height",
+        "m": "overlap added_overlap grown_overlap contact_radius delta_max residual_overlap dent_radius wear height",
         "m^2": "area",
         "m/s": "speed",
         "N": "force force_x force_y force_z",
-        "Pa": "normal_stress shear_stress pressure asked reached peak opposite_pressure radial_pressure",
+        "Pa": "body_pressure normal_stress shear_stress pressure asked reached peak opposite_pressure radial_pressure",
         "J": "energy elastic_energy kinetic rotation gravity elastic plastic adhesion friction springs work "
         "lost_spheres_energy balance",
     }.items()
@@ -133,7 +133,7 @@ def place(p: ScenePlan, wall: str, axis: int, time: Array) -> Array:
     return here[:, axis]
 
 
-GROWTH = ["added_overlap", "screening"]  # that an engine gives with compaction
+GROWTH = ["added_overlap", "screening", "grown_overlap", "body_pressure"]  # that an engine gives with compaction
 NORMAL, FORCE = ([f"{name}_{axis}" for axis in "xyz"] for name in ("normal", "force"))  # of the engine
 BY_LAW = ["force", "contact_radius", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
@@ -160,7 +160,7 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     raw: step, wall, i, j, overlap, of a law that yields delta_max, force on i; i and j are ids of spheres in any order,
     or j = 0 and `wall` the name of a wall, where the normal is given; with adhesion also whether the bodies are
     attached, for they may overlap in a dent without a contact; with compaction added_overlap, with which the law's
-    overlaps are larger than those of the spheres, and screening. What is only near is left out.
+    overlaps are larger than those of the spheres, and the rest of GROWTH. What is only near is left out.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     raw = touching(p, raw)
@@ -188,7 +188,9 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     known["R_star"] = reduced(first["radius"], second["radius"])
     known["overlap"], known["largest"] = raw["overlap"] + added, raw["delta_max"] + added
     known["attached"] = raw["attached"]
-    known["screening"] = raw["screening"].where(raw["screening"] > 0.0, 1.0) if p.model.compaction else 1.0  # 0: new
+    for name, none in (("screening", 1.0), ("grown_overlap", 0.0), ("body_pressure", 0.0)):
+        known[name] = raw[name] if p.model.compaction else none
+    known["screening"] = known["screening"].where(known["screening"] > 0.0, 1.0)  # 0: a new contact
     table = raw[contact_columns(p)[: -len(BY_LAW)]].join(energies(p, known))
     if p.model.cohesion:
         table["elastic_energy"] += cohesive_energy(p.model.cohesion, first["radius"], second["radius"], raw["overlap"])
@@ -260,7 +262,7 @@ def _unit(vectors: Array) -> Array:
 
 def energies(p: ScenePlan, contacts: pd.DataFrame) -> pd.DataFrame:
     """The columns BY_LAW of contacts, of which these are known: i, j (types), R_star, radius of i [m], overlap, largest
-    [m], attached, screening."""
+    [m], attached, and of GROWTH screening, grown_overlap [m], body_pressure [Pa]."""
     out = pd.DataFrame(0.0, index=contacts.index, columns=BY_LAW)
     for (i, j), of_types in contacts.groupby(["i", "j"]):
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
@@ -274,10 +276,12 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
     """The columns BY_LAW of contacts of one curvature_share.
 
     A screened contact gives back G = 1 - (1 - gamma) (1 - alpha_Y/b) of the overlap that it would give back alone from
-    its largest overlap b: the force is the force of the contact alone at b - (b - overlap)/G.
+    its largest overlap b. Growth changes the largest force by a factor k: the force is k times the force of the contact
+    alone at b - (b - overlap)/(k G), the elastic energy k^2 G times its energy there.
     """
-    R, radius, overlap, largest, screening = (
-        contacts[name].to_numpy(float) for name in ("R_star", "radius", "overlap", "largest", "screening")
+    R, radius, overlap, largest, screening, grown, pressure = (
+        contacts[name].to_numpy(float)
+        for name in ("R_star", "radius", "overlap", "largest", "screening", "grown_overlap", "body_pressure")
     )
     largest = np.maximum(largest, overlap)
     if spec.adheres:
@@ -285,7 +289,13 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
     theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
     share = float(spec.curvature_share(R[0], radius[0]))
     law = Law(spec.name, E_star=E_star, share=share, **spec.parameters)
-    given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
+    yielded = np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
+    factor = (
+        _of_growth(law, R, largest, grown, 2.0 / 3.0 * spec.parameters["yield_stress"] + pressure, yielded)
+        if grown.any()
+        else np.ones(len(R))
+    )
+    given_back = factor * (1.0 - (1.0 - screening) * yielded)
     overlap = largest - (largest - overlap) / given_back
     force, radius, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
@@ -298,7 +308,19 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
     elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
     radius = np.where(force > 0.0, radius, 0.0)
     dent = np.where(plastic > 0.0, dent, 0.0)
-    return force, radius, largest - given_back * (largest - residual), dent, plastic, given_back * elastic
+    residual = largest - given_back * (largest - residual)
+    return factor * force, radius, residual, dent, plastic, factor * given_back * elastic
+
+
+def _of_growth(law: Law, R: Array, largest: Array, grown: Array, pressure: Array, yielded: Array) -> Array:
+    """The largest force with growth over that of the law: what growth adds to the area carries `pressure` [Pa]."""
+    alone = largest - grown
+    there = alone > 0.0
+    force, radius, _ = law.step(R_star=R, delta_max=largest, delta=largest)
+    before, inner, _ = law.step(R_star=R, delta_max=np.where(there, alone, 1.0), delta=np.where(there, alone, 0.0))
+    carried = math.pi * (radius**2 - inner**2) * pressure
+    excess = np.where(grown > 0.0, yielded * (force - before - carried), 0.0)
+    return 1.0 - excess / np.maximum(force, 1e-300)
 
 
 def _with_adhesion(law: JKR, overlap: Array, largest: Array, attached: Array) -> tuple[Array, ...]:

@@ -15,6 +15,7 @@ from yade.wrapper import PyRunner
 from .spheres import Fill, Spheres, remove
 
 KINDS = ("force", "torque")  # of loads
+GROWTH = ("addedOverlap", "screening", "grownOverlap", "bodyPressure")  # of contacts with compaction
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 LOOK = 100  # most steps between two looks at a condition
 SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
@@ -397,15 +398,15 @@ class Recorder:
 
     def contacts(self) -> Iterator[tuple[Any, ...]]:
         """Bodies, overlap, largest overlap [m], 1 if attached, force on the first body [N], unit normal from the second
-        body to the first, added overlap [m] and gamma."""
+        body to the first, and GROWTH."""
         for i in (i for i in O.interactions if i.isReal):
             x, force = i.phys, i.phys.normalForce + i.phys.shearForce  # on the second body, as the normal points to it
             touch = (i.geom.penetrationDepth, x.deltaMax, x.contactRadius > 0.0)
-            yield (i.id1, i.id2, *touch, *-force, *-i.geom.normal, x.addedOverlap, x.screening)
+            yield (i.id1, i.id2, *touch, *-force, *-i.geom.normal, *(getattr(x, name) for name in GROWTH))
 
     def contact_table(self) -> None:
         """Write every contact, bodies by number. Overlap 0: the bodies have separated since the last table."""
-        number, gone, width = self.spheres.number, self.spheres.gone, 13 if self.law.compaction else 11
+        number, gone, width = self.spheres.number, self.spheres.gone, 11 + len(GROWTH) * self.law.compaction
         gone = gone | {k for k, there in zip(self.spheres.ids, self.shown(), strict=True) if not there}
         here = [row[:width] for row in self.contacts() if gone.isdisjoint(row[:2])]
         rows = np.array([(number[a], number[b], *values) for a, b, *values in here], float)
