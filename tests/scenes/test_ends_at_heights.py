@@ -7,9 +7,10 @@ import pytest
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case
 from test_ends_of_phases import BOX, DOWN, ENGINES, LID
-from test_press import COUNT, RADIUS, SIDE, plate, press, without
+from test_press import COUNT, HEIGHT, RADIUS, SIDE, evaluated, plate, press, without
 
 from epdem.case.scene import parse
+from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.scenes import summary
 from epdem.scenes.plan import plan
@@ -66,6 +67,20 @@ def test_a_press_to_a_density_and_one_to_the_pressure_found_there_agree(tmp_path
     again = without(press(stages=[f"{found['pressure']:.9g} Pa"], speed="1 m/s"), "hold")
     other = run(write_case(again, tmp_path / "b"), out=tmp_path / "b/out").results.stages.iloc[0]
     assert other["relative_density"] == pytest.approx(found["relative_density"], abs=0.004)
+
+
+@pytest.mark.parametrize("engine", ["liggghts", "lammps"])
+def test_the_force_is_looked_at_from_a_density_on_that_can_bear_it(engine):
+    """The steps at 3 m/s to a relative density of 0.4; spheres that attract each other may bear a plate before."""
+    data = without(press(stages=["40 MPa"]), "hold")
+    p = plan(parse(data))
+    text = "\n".join(scene_engine(engine).files(p).values())
+    (line,) = [x for x in text.splitlines() if x.startswith("variable loose equal ")]
+    formula = line.partition(" equal ")[2].partition("  #")[0].removeprefix("floor")
+    way = 3.0 * p.time_step * evaluated(formula, {"punch": -0.2e-3})
+    assert HEIGHT - 0.2e-3 - way == pytest.approx(SOLID / 0.4, rel=1e-9)
+    data |= {"contact": {"cohesion": "1e3 J/m^3"}, "law": {"name": "cavity"}}
+    assert "variable loose" not in "\n".join(scene_engine(engine).files(plan(parse(data))).values())
 
 
 def lid(**until):

@@ -115,12 +115,13 @@ class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
-    `nears`; apart: these do not stop at rows. left: formula of the steps that are left to a height, "": no height is
-    awaited. missing: formula of the missing force over that at which the walls slow, "": they do not. share: of their
-    speed, at the begin of a phase or of a continued run. opposite, force: formulas of the force on the wall against a
-    punch and, where a height is awaited, on the punch.
-    stop: commands that bring the walls to rest. void: formula of the height of the void in a pressed bed, which ends
-    the run at 0; "": no bed is pressed. gone: steps with looks before a continued run.
+    `nears`; apart: these do not stop at rows. loose: formula of the steps in which a bed is too loose to bear a force,
+    "": they are not known. left: formula of the steps that are left to a height, "": no height is awaited. missing:
+    formula of the missing force over that at which the walls slow, "": they do not. share: of their speed, at the begin
+    of a phase or of a continued run. opposite, force: formulas of the force on the wall against a punch and, where a
+    height is awaited, on the punch. stop: commands that bring the walls to rest. void: formula of the height of the
+    void in a pressed bed, which ends the run at 0; "": no bed is pressed. gone: steps with looks before a continued
+    run.
     """
 
     first: int
@@ -133,6 +134,7 @@ class StopCondition:
     every: int = 0
     nears: bool = False
     apart: bool = False
+    loose: str = ""
     left: str = ""
     missing: str = ""
     share: str = "1.0"
@@ -198,10 +200,11 @@ def ended_at(run: PhaseSteps) -> list[str]:
 def wanted_share(missing: str) -> str:
     """Formula of the share of its speed that a wall comes to have. missing: name of the missing force over that at
     which the wall slows."""
-    return f"({missing}<1)*({missing}>-1)*{missing}*(1-0.9*({missing}<0))+({missing}>=1)-0.1*({missing}<=-1)"
+    return f"0.45+0.05*abs({missing}+1)+0.45*abs({missing})-0.5*abs({missing}-1)"
 
 
 BORNE = 0.05  # of the pressure of a stage, that the opposite wall bears at least
+LOOSE = 0.4  # relative density below which spheres that do not attract each other bear no plate
 LOOK = 100  # steps between two looks at a condition
 
 
@@ -257,6 +260,7 @@ def stop_condition(
             every=p.every,
             nears=run.slows is None,
             apart=run.slows is not None,
+            loose="" if run.slows is None else _loose(p, run, place),
             missing="" if run.slows is None else missing,
             opposite=opposite,
             stop=tuple(stop),
@@ -265,6 +269,14 @@ def stop_condition(
     apart = until.wall is None
     look = min(LOOK, p.every) if apart else p.every
     return StopCondition(first, rows, formula, condition, void, until.limit, look, p.every, apart=apart)
+
+
+def _loose(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], str]) -> str:
+    """Formula of the steps until a bed that a plate presses is dense enough to bear a force; "": they are not known."""
+    bed = bed_of(p.pressed, run.case)
+    if bed is None or p.model.cohesion or p.model.adhesion or (fall := closing_speed(bed, run.case)) <= 0.0:
+        return ""
+    return f"({place(bed)}-{number(bed.solid_height / LOOSE)})/{number(fall * run.time_step)}"
 
 
 def _at_height(
