@@ -62,6 +62,7 @@ ACROSS = {"planes across x and y", "plates across x and y", "open box", "box wit
 SHARED_TYPES = {"contact": set(SLOTS["contact"]) - {"wall friction", "friction of pairs"}}  # of spheres and walls
 # Features that exclude each other, and the sentence that says so. A case with none of these is never refused.
 EXCLUDED = [
+    ({"phases": {"wall presses"}, "rows": {"rows of walls"}}, "rows do not know its place"),
     ({"law": {"johnson, one strength"}, "strength": {"hardness", "yield ratio"}}, "each the strength; keep one"),
     (ADHESIVE | {"contact": COHESION}, "has its attraction already"),
     ({"law": {"cavity, compaction"}, "contact": COHESION}, "contacts with law.compaction have no cohesion"),

@@ -106,6 +106,11 @@ def refuse_combinations(case: SceneCase, s: Parts) -> None:
     pressed = {name for name, move in moves if move.press}
     if both := {name for name, move in moves if name in pressed and not move.press}:
         raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
+    for row in s.row:
+        if row.position and row.wall in pressed:
+            raise CaseError(
+                f"scene.row.{row.name}: a force drives wall {row.wall}, and rows do not know its place; remove the row"
+            )
     turning = {w.name for w in s.wall if isinstance(w, CylinderWall | ConeWall) and w.angular_velocity}
     if both := pressed & turning:
         raise CaseError(
