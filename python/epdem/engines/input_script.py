@@ -4,7 +4,7 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -142,6 +142,7 @@ class StopCondition:
     force: str = ""
     stop: tuple[str, ...] = ()
     gone: int = 0
+    lag: ClassVar[int] = LAG  # steps within which the share follows
 
     @property
     def steps(self) -> int:
@@ -152,11 +153,6 @@ class StopCondition:
     def wanted(self) -> str:
         """Formula of the share that walls come to have."""
         return wanted_share("v_missing")
-
-    @property
-    def lag(self) -> int:
-        """Steps within which the share follows."""
-        return LAG
 
 
 def default_skin(p: ScenePlan) -> float:

@@ -5,7 +5,7 @@ import math
 import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -214,16 +214,12 @@ class Stop:
     missing: str = ""
     left: str = ""
     force: str = ""
+    lag: ClassVar[int] = LAG  # steps within which the share follows
 
     @property
     def wanted(self) -> str:
         """Formula of the share that walls come to have, of x."""
         return wanted_share("x")
-
-    @property
-    def lag(self) -> int:
-        """Steps within which the share follows."""
-        return LAG
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
