@@ -150,6 +150,7 @@ void PairEp::init_style() {
 
   create_history();
   history_->prepare(&list, layout_, models_);
+  heat_ = FixHeat::of(*modify);
 
   const auto freezes = modify->get_fix_by_style("^freeze");
   frozen_ = freezes.empty() ? 0 : freezes[0]->groupbit;
@@ -221,6 +222,7 @@ void PairEp::compute(int eflag, int vflag) {
   const bool counts = !update->setupflag;
   pass_.work = energies_ && counts;
   if (pass_.work) history_->open_energies(atom->nlocal);
+  if (heat_) heat_->open();
   if (models_.compaction) history_->close_growth(counts);
   if (list->inum > 0) {
     std::vector<double> before;
@@ -279,6 +281,7 @@ void PairEp::finish(int n) {
   if (pass_.work) {
     scatter(history_->half_energies(b, models_));
     history_->add_works(b, n, models_, false);
+    if (heat_) heat_->add_pairs(b, n, models_);
   } else {
     scatter(kernels::NothingBeside{});
   }
