@@ -236,9 +236,10 @@ void PairEp::compute(int eflag, int vflag) {
 
 /// Has all pairs of the list computed that overlap or stand across a gap.
 void PairEp::gather() {
-  const kernels::PairList& pairs = history_->pairs();
+  kernels::PairList& pairs = history_->pairs();
+  if (layout_.gap.growth >= 0 && !pass_.repeats) pairs.begin_pass();
   const auto compute_block = [this](int n) { finish(n); };
-  const auto search = [&](double factor) { return pairs.search(pass_.x, atom->radius, factor); };
+  const auto search = [&](double factor) { return pairs.search(pass_.x, atom->radius, factor, pass_.sums); };
   if (!layout_.gap.any()) return kernels::each_overlap(*spheres_, search(1.0), *block_, place_, compute_block);
   const double factor = layout_.gap.growth < 0 ? HUGE_VAL : history_->factor();
   const auto across_gap = [this](int i, int j, int place) { return stands(i, j, history_->at(place)); };
@@ -274,7 +275,10 @@ void PairEp::finish(int n) {
   fetch(n, [&](int k) { return history_->at(place_[k]); });
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
-  if (models_.compaction) history_->note_dents(b, n, false);
+  if (models_.compaction) {
+    history_->pairs().note(place_, n);
+    history_->note_dents(b, n, false);
+  }
   const auto scatter = [&](auto beside) {
     kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
   };
