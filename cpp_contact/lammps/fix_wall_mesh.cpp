@@ -37,7 +37,7 @@ class MeshRegion final : public Region {
     contacts_.resize(found_.size());
     contact = contacts_.data();
     for (std::size_t k = 0; k < found_.size(); ++k) {
-      const TriangleSurface::Contact& c = found_[k];
+      const kernels::TriangleContact& c = found_[k];
       contacts_[k] = {c.distance, c.from_wall.x, c.from_wall.y, c.from_wall.z, 0.0, c.triangle, 0};
     }
     return static_cast<int>(found_.size());
@@ -49,7 +49,7 @@ class MeshRegion final : public Region {
 
  private:
   std::vector<int> near_;
-  std::vector<TriangleSurface::Contact> found_;
+  std::vector<kernels::TriangleContact> found_;
   std::vector<Region::Contact> contacts_;
 };
 
@@ -104,24 +104,18 @@ void FixWallMesh::find(int i, std::vector<Contact>& found) {
   pass_records(i, found);
 }
 
-/// A contact that passes from one triangle to another takes its record along, at best within a plane.
 void FixWallMesh::pass_records(int i, const std::vector<Contact>& found) {
   if (count(i) == 0 || has_records_of(i, found)) return;
-  const auto is_of = [&](const Contact& c, int k) { return record(i, k)[0] == c.part; };
-  std::vector<bool> is_kept(count(i)), has_record(found.size());
-  for (std::size_t c = 0; c < found.size(); ++c)
-    for (int k = 0; k < count(i); ++k)
-      if (is_of(found[c], k)) is_kept[k] = has_record[c] = true;
   const TriangleSurface& surface = mesh_->surface;
-  for (const bool bends : {false, true})
-    for (std::size_t c = 0; c < found.size(); ++c)
-      for (int k = 0; k < count(i) && !has_record[c]; ++k) {
-        const int before = static_cast<int>(record(i, k)[0]), now = found[c].part;
-        if (is_kept[k] || before >= surface.size()) continue;
-        if (!(bends || surface.in_one_plane(before, now)) || !surface.meet(before, now, atom->radius[i])) continue;
-        record(i, k)[0] = now;
-        is_kept[k] = has_record[c] = true;
-      }
+  std::vector<int> before(count(i)), now;
+  for (int k = 0; k < count(i); ++k) {
+    const int triangle = static_cast<int>(record(i, k)[0]);
+    before[k] = triangle < surface.size() ? triangle : -1;
+  }
+  for (const Contact& c : found) now.push_back(c.part);
+  kernels::pass_records(
+      before, now, atom->radius[i], [&](int t) -> const kernels::Triangle& { return surface[t]; },
+      [&](std::size_t k, std::size_t c) { record(i, static_cast<int>(k))[0] = now[c]; });
 }
 
 }  // namespace epdem::lammps

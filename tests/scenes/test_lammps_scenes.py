@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bulk scenes in LAMMPS: the way of the spheres in LIGGGHTS, the energy that moving walls bring, what is refused."""
 
+import itertools
+
 import numpy as np
 import pytest
 from parts_cases import BED, CASES, FLOOR, own, parts, write_stl
@@ -176,12 +178,14 @@ def test_a_sphere_takes_the_way_of_liggghts_in_a_bowl_of_triangles_that_shakes(r
 
 
 FOOT = [(-0.012, 0.010, -0.008), (-0.004, 0.010, -0.008), (-0.008, 0.016, -0.008)]
-TOPS = [  # two triangles, a ridge between two slopes, a tip of three, all up to z = 0
+TOPS = [  # two triangles, a ridge between two slopes, a tip of three, a convex fold of 10 degrees, all up to z = 0
     [(-0.02, -0.02, 0), (0, -0.02, 0), (0, 0, 0)],
     [(-0.02, -0.02, 0), (0, 0, 0), (-0.02, 0, 0)],
     [(0.01, -0.01, 0), (0.01, 0.01, 0), (0.018, 0, -0.01)],
     [(0.01, 0.01, 0), (0.01, -0.01, 0), (0.002, 0, -0.01)],
     *([(-0.008, 0.012, 0), FOOT[k], FOOT[(k + 1) % 3]] for k in range(3)),
+    *([(0.022, -0.01, 0), *two] for two in itertools.pairwise([(0.03, -0.01, 0), (0.03, 0.02, 0), (0.022, 0.02, 0)])),
+    [(0.03, -0.01, 0), (0.038, 0, -0.00141), (0.03, 0.02, 0)],
 ]
 PLACES = {  # of a sphere above them [m]
     "face": (-0.012, -0.006),
@@ -192,6 +196,8 @@ PLACES = {  # of a sphere above them [m]
     "corner of two": (-0.02, -0.02),
     "ridge": (0.01, 0.002),
     "tip": (-0.008, 0.012),
+    "fold": (0.03, 0.015),
+    **{f"{s} R beside the fold": (0.03 - s * 1.5e-3, 0.004 * k - 0.002) for k, s in enumerate((0.01, 0.1, 0.25))},
 }
 
 
@@ -220,8 +226,39 @@ def test_a_face_an_edge_and_a_corner_give_one_rebound_in_both_hosts(law, shift, 
     expected = ends[1]["vz"].iloc[0]
     assert expected > 0.1
     for end in ends:
-        for name, vz in zip(PLACES, end["vz"], strict=True):
-            assert vz == pytest.approx(expected, rel=1e-6), name
+        for name, vx, vz in zip(PLACES, end["vx"], end["vz"], strict=True):
+            assert vz == pytest.approx(expected, rel=1e-6) and abs(vx) <= 1e-6 * expected, name
+
+
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize("kind", ["fold", "plate"])
+def test_a_sphere_crosses_edges_with_friction_as_in_liggghts(kind, tmp_path):
+    """A convex fold of 10 degrees; the diagonal of a plate that moves."""
+    slope = 0.04 * np.tan(np.radians(10)) if kind == "fold" else 0.0
+    x, z = (-0.02, 0.0, 0.02), (0.0, 0.0, -slope / 2)
+    a, b = ([(x[k], y, z[k]) for k in range(3)] for y in (-0.02, 0.02))
+    triangles = [t for k in (0, 1) for t in ((a[k], a[k + 1], b[k + 1]), (a[k], b[k + 1], b[k]))]
+    write_stl(tmp_path / "floor.stl", np.array(triangles))
+    starts = [(-1e-4 * k, 4e-3 * k - 0.014) for k in range(8)] + [(-0.01 - 1e-5 * k, 4e-3 * k - 0.014) for k in (1, 2)]
+    lines = [f"{x!r},{y!r},1.5003e-3,1.5e-3,glass,2,0.3,-0.5" for x, y in starts]
+    (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *lines, ""]))
+    move = {"wall": "floor", "kind": "linear", "velocity": ["0.1 m/s", "0 m/s", "0.2 m/s"]}
+    data = parts(
+        wall=[{"name": "floor", "kind": "stl", "file": "floor.stl", "material": "steel"}],
+        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        fill=[{"name": "table", "file": "spheres.csv"}],
+        phase=[{"name": "hit", "duration": "2 ms"} | ({"move": [move]} if kind == "plate" else {})],
+    )
+    data["numerics"] = {"time_step": "1e-7 s"}
+    data["contact"] = {"friction": 0.3}
+    path = write_case(data, tmp_path)
+    ours, theirs = (
+        last_frame(run(path, engine=name, out=tmp_path / name).results.particles) for name in ("lammps", "liggghts")
+    )
+    for name in ("vx", "vy", "vz", "omega_x", "omega_y"):
+        largest = np.abs(theirs[name]).max()
+        assert largest > 0 and np.abs(ours[name] - theirs[name]).max() <= 1e-9 * largest, name
 
 
 def turned(axis):

@@ -3,9 +3,12 @@
 //
 // On meshes LIGGGHTS evaluates each sphere near a triangle, and resets the marks of all contacts that the neighbour
 // lists allow, in every step. Here a loop in the order of LIGGGHTS's sees the spheres that can touch, and the marks of
-// spheres with contacts; LIGGGHTS's own functions compute the geometry of a contact and find its history, so that not
-// one bit differs.
+// spheres with contacts; LIGGGHTS's own functions compute the geometry of a contact and find its history.
+//
+// LIGGGHTS adds the contact with a convex edge to the contact with a face beside the edge. Here a sphere has one
+// contact over a face, an edge or a corner, whose history goes along, also with EPDEM_LOOP=generic.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -13,6 +16,7 @@
 #include "fix_move_mesh.h"
 #include "fix_neighlist_mesh.h"
 #include "kernels/near_spheres.hpp"
+#include "kernels/triangles.hpp"
 #include "replaced.hpp"
 #include "triangles.hpp"
 #include "wall.hpp"
@@ -58,6 +62,14 @@ struct NearMesh {
 struct Touching {
   bigint step = -1;
   std::vector<int> spheres, before;
+};
+
+/// A sphere and a triangle that it reaches.
+struct Reached {
+  int triangle, i;
+  int before;  // the place of the same sphere at another triangle, or -1
+  bool is_face, is_contact;
+  double gap, delta[3], weight[3];
 };
 
 /// While LIGGGHTS's loop over a wall runs; nullptr: not a wall of our models.
@@ -120,7 +132,60 @@ struct Contacts : FixContactHistoryMesh {
 struct MeshState {
   NearMesh near;
   Touching touching;
+  std::vector<Reached> reached{};
+
+  /// Chooses the contacts among all that is reached, and gives them the records of contacts that end.
+  void find_contacts(TriMesh& mesh, FixContactHistoryMesh* history, const LAMMPS_NS::Atom& atom);
+
+ private:
+  std::vector<int> last_;  // of each sphere: its last place in `reached`
+  std::vector<kernels::TriangleContact> near_, found_;
+  std::vector<int> recorded_, now_;
 };
+
+void MeshState::find_contacts(TriMesh& mesh, FixContactHistoryMesh* history, const LAMMPS_NS::Atom& atom) {
+  last_.assign(atom.nlocal, -1);
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    reached[k].before = last_[reached[k].i];
+    last_[reached[k].i] = static_cast<int>(k);
+  }
+  const auto triangle_of = [&](int t) { return kernels::Triangle(Triangles::corners(mesh) + 9L * t); };
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    const int i = reached[k].i;
+    if (last_[i] != static_cast<int>(k)) continue;
+    const Vec<double> x = vector_of(atom.x[i]);
+    now_.assign(1, reached[k].triangle);
+    if (reached[k].before >= 0) {
+      near_.clear();
+      for (int c = last_[i]; c >= 0; c = reached[c].before)
+        near_.push_back({reached[c].triangle, reached[c].gap + atom.radius[i], -vector_of(reached[c].delta)});
+      kernels::find_contacts(x, near_, triangle_of, found_);
+      now_.clear();
+      for (const kernels::TriangleContact& c : found_) now_.push_back(c.triangle);
+      for (int c = last_[i]; c >= 0; c = reached[c].before)
+        reached[c].is_contact = std::find(now_.begin(), now_.end(), reached[c].triangle) != now_.end();
+    }
+    if (!history || Contacts::count(*history)[i] == 0) continue;
+    int* const ids = Contacts::triangles(*history, i);
+    int* const end = ids + history->nneighs(i);
+    const auto has_record = [&](int t) { return std::find(ids, end, mesh.id(t)) != end; };
+    if (std::all_of(now_.begin(), now_.end(), has_record)) continue;
+    recorded_.clear();
+    for (const int* id = ids; id != end; ++id) {
+      double least = std::numeric_limits<double>::max();
+      recorded_.push_back(-1);
+      for (int copy = 0; copy < (*id < 0 ? 0 : mesh.map_size(*id)); ++copy) {  // across periodic faces
+        const int t = mesh.map(*id, copy);
+        const double distance = length(triangle_of(t).to(x));
+        if (distance >= least) continue;
+        least = distance;
+        recorded_.back() = t;
+      }
+    }
+    kernels::pass_records(recorded_, now_, atom.radius[i], triangle_of,
+                          [&](std::size_t record, std::size_t contact) { ids[record] = mesh.id(now_[contact]); });
+  }
+}
 
 }  // namespace epdem::liggghts::loop
 
@@ -165,12 +230,12 @@ namespace loop = epdem::liggghts::loop;
   auto* const wall = dynamic_cast<loop::BatchedWall*>(impl);
   const loop::ScopedWall work(wall, *this);
   const loop::LoopState* const loops = wall ? loop::active_loops(lmp) : nullptr;
-  bool batched_mesh_loop = loops && atom->sphere_flag && !atom->shapetype_flag && atom->nlocal > 0;
+  bool is_ours = wall && epdem::liggghts::library_matches(lmp) && atom->sphere_flag && !atom->shapetype_flag;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
-    batched_mesh_loop &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
+    is_ours &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
   }
-  if (!batched_mesh_loop) return original(this, vflag);
+  if (!is_ours || atom->nlocal == 0) return original(this, vflag);
   LIGGGHTS::ContactModels::SurfacesIntersectData contact;
   contact.is_wall = true;
   auto& kept = wall->meshes;
@@ -183,39 +248,57 @@ namespace loop = epdem::liggghts::loop;
     loop::Touching& touching = kept[m]->touching;
     touching.before.swap(touching.spheres);
     touching.spheres.clear();
-    const bool settled = loop::settled(touching, *update, *neighbor);
+    const bool settled = loops && loop::settled(touching, *update, *neighbor);
     if (history) settled ? loop::Contacts::unmark(*history, touching.before) : history->markAllContacts();
     if (store_force_contact_) fix_wallforce_contact_ = fix.meshforceContact();
     if (store_force_contact_stress_) fix_wallforce_contact_stress_ = fix.meshforceContactStress();
     atom_type_wall_ = fix.atomTypeWall();
     const auto velocities = mesh.prop().getElementProperty<MultiVectorContainer<double, 3, 3>>("v");
     double*** const v = velocities ? velocities->begin() : nullptr;
-    double v_wall[3] = {}, delta[3], weight[3];
+    double v_wall[3] = {};
     contact.mesh = &mesh;
     contact.fix_mesh = &fix;
-    loop::NearMesh& near = kept[m]->near;
-    near.update(mesh, *fix.meshNeighlist(), *atom, *loops, *neighbor);
+    std::vector<loop::Reached>& reached = kept[m]->reached;
+    reached.clear();
     const double at_distance = neighbor->contactDistanceFactor - 1.0;
-    near.spheres.each(loops->kernels.spheres, [&](int triangle, int i) {
+    const auto resolve = [&](int triangle, int i) {
       int side;
-      contact.i = i;
-      contact.radi = atom->radius[i];
-      const double gap = mesh.resolveTriSphereContactBary(i, triangle, contact.radi, atom->x[i], delta, weight, side);
+      loop::Reached r{triangle, i, -1, false, true, 0.0, {}, {}};
+      r.gap = mesh.resolveTriSphereContactBary(i, triangle, atom->radius[i], atom->x[i], r.delta, r.weight, side);
       constexpr int face = 7;  // of LIGGGHTS's sides
-      const bool intersects = gap <= 0.0;
-      if (!intersects && !(gap < at_distance * contact.radi)) return;
+      r.is_face = side == face;
+      if (r.gap <= 0.0 || r.gap < at_distance * atom->radius[i]) reached.push_back(r);
+    };
+    if (loops) {
+      loop::NearMesh& near = kept[m]->near;
+      near.update(mesh, *fix.meshNeighlist(), *atom, *loops, *neighbor);
+      near.spheres.each(loops->kernels.spheres, resolve);
+    } else {
+      const auto& listed = loop::Lists::of(*fix.meshNeighlist());
+      const int triangles = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(listed.size()));
+      for (int t = 0; t < triangles; ++t)
+        for (const int i : listed[t].contacts)
+          if (i < atom->nlocal) resolve(t, i);
+    }
+    kept[m]->find_contacts(mesh, history, *atom);
+    for (loop::Reached& r : reached) {
+      if (!r.is_contact) continue;
+      const bool intersects = r.gap <= 0.0;
+      contact.i = r.i;
+      contact.radi = atom->radius[r.i];
       if (history) {
-        if (!history->handleContact(i, mesh.id(triangle), contact.contact_history, intersects, side == face)) return;
-        touching.spheres.push_back(i);
+        if (!history->handleContact(r.i, mesh.id(r.triangle), contact.contact_history, intersects, r.is_face)) continue;
+        touching.spheres.push_back(r.i);
       }
       for (int x = 0; x < 3; ++x) {
         if (v)
-          v_wall[x] = weight[0] * v[triangle][0][x] + weight[1] * v[triangle][1][x] + weight[2] * v[triangle][2][x];
-        contact.delta[x] = -delta[x];
+          v_wall[x] =
+              r.weight[0] * v[r.triangle][0][x] + r.weight[1] * v[r.triangle][1][x] + r.weight[2] * v[r.triangle][2][x];
+        contact.delta[x] = -r.delta[x];
       }
-      contact.deltan = -gap;
-      impl->compute_force(this, contact, intersects, v_wall, &fix, m, &mesh, triangle);
-    });
+      contact.deltan = -r.gap;
+      impl->compute_force(this, contact, intersects, v_wall, &fix, m, &mesh, r.triangle);
+    }
     if (!history) continue;
     settled ? loop::Contacts::end_unmarked(*history, touching.before) : history->cleanUpContacts();
     touching.step = update->ntimestep;

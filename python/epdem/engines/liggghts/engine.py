@@ -8,24 +8,17 @@ from typing import Any, ClassVar
 
 from ...base import paths
 from ...base.processes import most_ranks
-from ...case.walls import StlWall
 from ...errors import EngineError
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...scenes.model import Model
-from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
 from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, resume, tables
 from .deck import ImpactDeck, contact_words
-
-EDGES = (
-    "walls of triangles ({}): a sphere on a face, less than 0.3 R from a convex edge, has two contacts in LIGGGHTS: "
-    "rebounds there are up to 9 % wrong at a fold of 10 degrees; LAMMPS has one contact"
-)
 
 
 class Liggghts(Host):
@@ -63,10 +56,6 @@ class Liggghts(Host):
             types=tuple(t.material for t in m.types),
             wall_type=len(m.types) if math.isinf(x.target.radius) else None,
         )
-
-    def notes(self, plan: ScenePlan) -> list[str]:
-        names = [name for name, mesh in plan.scene.meshes.items() if isinstance(mesh, StlWall)]
-        return super().notes(plan) + [EDGES.format(", ".join(names))] * bool(names)
 
     def start(self, script: str, folder: Path, **how: Any) -> float:
         try:
