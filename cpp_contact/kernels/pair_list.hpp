@@ -34,6 +34,22 @@ class PairList {
   /// Ends the list.
   void close() {
     for (std::vector<int>* spheres : {&i_, &j_}) spheres->insert(spheres->end(), most_lanes, 0);
+    in_contact_.assign(i_.size(), 0);
+    pass_ = 2;
+  }
+
+  /// With compaction, before a pass over the pairs.
+  void begin_pass() { ++pass_; }
+
+  /// The pairs that were in contact in the pass before, where `note` has not been told.
+  template <class Known>
+  void recall(Known known) {
+    for (int place = 0; place < count_; ++place) in_contact_[place] = known(place) ? pass_ : 0;
+  }
+
+  /// Notes n pairs in contact in this pass.
+  void note(const int* place, int n) {
+    for (int k = 0; k < n; ++k) in_contact_[place[k]] = pass_;
   }
 
   int count() const { return count_; }
@@ -47,15 +63,16 @@ class PairList {
     return -1;
   }
 
-  /// A search for the pairs closer than the root of `factor` times the sum of their radii.
-  PairSearch search(const double* x, const double* radius, double factor) const {
-    return {x, radius, factor, i_.data(), j_.data(), count_};
+  /// A search for the pairs closer than the root of `factor` times the sum of their radii; sums: BodySums, with
+  /// compaction.
+  PairSearch search(const double* x, const double* radius, double factor, const double* sums = nullptr) const {
+    return {x, radius, factor, i_.data(), j_.data(), count_, 0, sums, in_contact_.data(), pass_};
   }
 
  private:
-  std::vector<int> i_, j_;  // most_lanes more than count_
-  std::vector<int> first_;  // by sphere
-  int count_ = 0;
+  std::vector<int> i_, j_, in_contact_;  // most_lanes more than count_
+  std::vector<int> first_;               // by sphere
+  int count_ = 0, pass_ = 2;
 };
 
 /// Has the full vectors of a block's first n contacts computed, moves the others to its begin and returns their number.

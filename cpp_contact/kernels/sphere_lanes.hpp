@@ -2,6 +2,7 @@
 // The loops of spheres.hpp as lanes; compiled once per instruction set, as kernel.hpp says.
 #pragma once
 
+#include "epdem/compaction.hpp"
 #include "epdem/lanes.hpp"
 #include "kernels/spheres.hpp"
 
@@ -169,9 +170,23 @@ int next_pairs(PairSearch& s, int* i, int* j, int* place) {
     for (int l = 0; l < lane_count; ++l) radius_i[l] = s.radius[of[l]];
     for (int l = 0; l < lane_count; ++l) radius_j[l] = s.radius[with[l]];
     const Lanes sum = radius_i + radius_j, rsq = d.a * d.a + d.b * d.b + d.c * d.c;
-    const Mask meet = rsq < s.factor * sum * sum;
+    Mask meet = rsq < s.factor * sum * sum;
     Places place_of = next;
-    if constexpr (marks_gaps) place_of ^= __builtin_convertvector(!(rsq < sum * sum), Places);
+    if constexpr (marks_gaps) {
+      const Mask apart = !(rsq < sum * sum);
+      place_of ^= __builtin_convertvector(apart, Places);
+      if (s.sums && any(meet & apart)) {
+        Lanes growth_i, growth_j;
+        for (int l = 0; l < lane_count; ++l) growth_i[l] = s.sums[body_values * long(of[l])];
+        for (int l = 0; l < lane_count; ++l) growth_j[l] = s.sums[body_values * long(with[l])];
+        const Lanes reach = sum + (radius_i * growth_i + radius_j * growth_j);
+        Places last;
+        __builtin_memcpy(&last, s.in_contact + k, sizeof last);
+        const Places known = last >= s.pass - 1;
+        // more than the round-off of the test that decides
+        meet &= (rsq < (1.0 + 1e-12) * (reach * reach)) | __builtin_convertvector(known, Mask);
+      }
+    }
     __builtin_memcpy(places, &place_of, sizeof places);
     next += lane_count;
     found += kept<3>(meet & among(last - k), {{of, with, places}}, {{i + found, j + found, place + found}});

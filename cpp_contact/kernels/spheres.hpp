@@ -39,6 +39,10 @@ struct PairSearch {
   double factor;             // a pair meets at a distance below the root of `factor` times the sum of its radii
   const int *i, *j;          // spheres; 8 more can be read
   int count, tested = 0;
+  // with compaction: BodySums of all spheres; of each pair the last pass in which it was in contact; this pass
+  const double* sums = nullptr;
+  const int* in_contact = nullptr;
+  int pass = 0;
 };
 
 struct SphereKernels {
@@ -56,7 +60,8 @@ struct SphereKernels {
   /// Tests the next pairs_at_once pairs, writes those that meet, with their place among all pairs, and returns their
   /// number. The arrays have room for 8 more.
   int (*next_pairs)(PairSearch&, int* i, int* j, int* place);
-  /// The same; pairs that do not overlap, but meet by the factor, have the complement of their place.
+  /// The same; pairs that do not overlap, but meet by the factor, have the complement of their place. With compaction
+  /// they meet where the growth of both closes the gap, or where they were in contact one pass before.
   int (*next_near_pairs)(PairSearch&, int* i, int* j, int* place);
 };
 

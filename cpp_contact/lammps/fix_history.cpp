@@ -241,6 +241,7 @@ void FixHistory::distribute() {
         break;
       }
   }
+  if (layout_.gap.growth >= 0) pairs_.recall([this](int place) { return at(place)[layout_.last_step] > 0.0; });
 }
 
 void FixHistory::read_list() {

@@ -29,7 +29,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   void prepare(LAMMPS_NS::NeighList* const* list, const Layout& layout, const Models& models);
 
   /// The pairs of the list without those that bonds exclude.
-  const kernels::PairList& pairs() const { return pairs_; }
+  kernels::PairList& pairs() { return pairs_; }
 
   /// The history of the pair at this place of the list.
   double* at(int place) { return page_.data() + long(layout_.values) * place; }

@@ -94,6 +94,7 @@ void FixWall::init() {
   if (words_.models.compaction != pair_->models().compaction)
     error->all(FLERR, "{}: compaction is {} here and {} in pair_coeff; give `compaction on` to both or to none", place_,
                words_.models.compaction ? "on" : "off", words_.models.compaction ? "off" : "on");
+  heat_ = FixHeat::of(*modify);
   if (!claimed_) {
     const std::string wrong = pair_->history()->claim_wall(id, restart_reset != 0);
     if (!wrong.empty()) error->all(FLERR, "{}, ID {}: {}", place_, id, wrong);
@@ -261,6 +262,7 @@ void FixWall::finish(int n) {
   if (pass_.work) {
     pair_->history()->add_wall_energies(b, n, words_.models);
     pair_->history()->add_works(b, n, words_.models, true);
+    if (heat_) heat_->add_wall(b, n, words_.models, id);
   }
   if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);

@@ -97,6 +97,7 @@ class FixWall : public LAMMPS_NS::Fix {
   bool candidates_valid_ = false;
   bool claimed_ = false;  // its contacts of a restart file, if there is one
   PairEp* pair_ = nullptr;
+  FixHeat* heat_ = nullptr;
   std::vector<double> constants_;   // by type
   kernels::Kernel kernel_[2] = {};  // the second one is complete
   kernels::Pass pass_{};

@@ -150,6 +150,7 @@ void PairEp::init_style() {
 
   create_history();
   history_->prepare(&list, layout_, models_);
+  heat_ = FixHeat::of(*modify);
 
   const auto freezes = modify->get_fix_by_style("^freeze");
   frozen_ = freezes.empty() ? 0 : freezes[0]->groupbit;
@@ -221,6 +222,7 @@ void PairEp::compute(int eflag, int vflag) {
   const bool counts = !update->setupflag;
   pass_.work = energies_ && counts;
   if (pass_.work) history_->open_energies(atom->nlocal);
+  if (heat_) heat_->open();
   if (models_.compaction) history_->close_growth(counts);
   if (list->inum > 0) {
     std::vector<double> before;
@@ -234,9 +236,10 @@ void PairEp::compute(int eflag, int vflag) {
 
 /// Has all pairs of the list computed that overlap or stand across a gap.
 void PairEp::gather() {
-  const kernels::PairList& pairs = history_->pairs();
+  kernels::PairList& pairs = history_->pairs();
+  if (layout_.gap.growth >= 0 && !pass_.repeats) pairs.begin_pass();
   const auto compute_block = [this](int n) { finish(n); };
-  const auto search = [&](double factor) { return pairs.search(pass_.x, atom->radius, factor); };
+  const auto search = [&](double factor) { return pairs.search(pass_.x, atom->radius, factor, pass_.sums); };
   if (!layout_.gap.any()) return kernels::each_overlap(*spheres_, search(1.0), *block_, place_, compute_block);
   const double factor = layout_.gap.growth < 0 ? HUGE_VAL : history_->factor();
   const auto across_gap = [this](int i, int j, int place) { return stands(i, j, history_->at(place)); };
@@ -272,13 +275,17 @@ void PairEp::finish(int n) {
   fetch(n, [&](int k) { return history_->at(place_[k]); });
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
-  if (models_.compaction) history_->note_dents(b, n, false);
+  if (models_.compaction) {
+    history_->pairs().note(place_, n);
+    history_->note_dents(b, n, false);
+  }
   const auto scatter = [&](auto beside) {
     kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
   };
   if (pass_.work) {
     scatter(history_->half_energies(b, models_));
     history_->add_works(b, n, models_, false);
+    if (heat_) heat_->add_pairs(b, n, models_);
   } else {
     scatter(kernels::NothingBeside{});
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fix_heat.hpp"
 #include "fix_history.hpp"
 #include "pair.h"
 #include "words.hpp"
@@ -69,6 +70,7 @@ class PairEp : public LAMMPS_NS::Pair {
   Layout layout_;
   std::string fix_id_;
   FixHistory* history_ = nullptr;
+  FixHeat* heat_ = nullptr;
 
   kernels::Kernel kernel_[2] = {};  // the second one is complete
   kernels::Pass pass_{};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "error.h"
+#include "fix_heat.hpp"
 #include "fix_motion.hpp"
 #include "fix_wall.hpp"
 #include "fix_wall_mesh.hpp"
@@ -68,6 +69,7 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
         reinterpret_cast<void*>(&create_pair<PairEp>));
   style("fix", FixHistory::style_name, "history of elastic-plastic contacts",
         reinterpret_cast<void*>(&create_fix<FixHistory>));
+  style("fix", FixHeat::style_name, "heat of spheres", reinterpret_cast<void*>(&create_fix<FixHeat>));
   style("fix", FixMotion::style_name, "motion of spheres", reinterpret_cast<void*>(&create_fix<FixMotion>));
   style("fix", FixGravity::style_name, "gravity", reinterpret_cast<void*>(&create_fix<FixGravity>));
   style("fix", FixTravel::style_name, "travel of walls", reinterpret_cast<void*>(&create_fix<FixTravel>));

@@ -98,6 +98,7 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
 /// With growth, pairs that cannot meet before LIGGGHTS makes the next lists are left out, until a sphere grows more.
 void PairLoop::read_lists(const Growth* growth) {
   if (listed_ == neighbor->lastcall && (!growth || growth->factor() <= listed_factor_)) return;
+  passed_ = -1;
   const bool narrows = growth && listed_ != neighbor->lastcall;
   listed_factor_ = narrows ? growth->factor_until_lists() : HUGE_VAL;
   listed_ = neighbor->lastcall;
@@ -125,13 +126,24 @@ void PairLoop::read_lists(const Growth* growth) {
   pairs_.close();
 }
 
+/// LIGGGHTS's own loop may have run in the step before: its marks say which pairs were in contact.
+void PairLoop::begin_pass() {
+  const auto marked = [&](int place) {
+    return pair_->listgranhistory->firstneigh[pairs_.i(place)][slots_[place]] != 0;
+  };
+  if (passed_ != update->ntimestep - 1) pairs_.recall(marked);
+  passed_ = update->ntimestep;
+  pairs_.begin_pass();
+}
+
 /// Has all pairs computed that overlap, with adhesion the pairs that are attached across a gap, with growth the pairs
 /// whose gap it closes; other near pairs lose their mark.
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
   read_lists(plan.growth);
+  if constexpr (reach == Reach::grown) begin_pass();
   const SphereKernels& kernels = *plan.spheres;
-  const auto search = [&](double factor) { return pairs_.search(pass_.x, atom->radius, factor); };
+  const auto search = [&](double factor) { return pairs_.search(pass_.x, atom->radius, factor, pass_.sums); };
   const auto compute_block = [&](int n) { finish<reach>(plan, n); };
   if constexpr (reach == Reach::touching) return each_overlap(kernels, search(1.0), *block_, place_, compute_block);
   const double apart = neighbor->contactDistanceFactor;
@@ -149,6 +161,7 @@ void PairLoop::gather(const Plan& plan) {
 template <Reach reach>
 void PairLoop::finish(const Plan& plan, int n) {
   if (n == 0) return;
+  if constexpr (reach == Reach::grown) pairs_.note(place_, n);
   fetch(plan, n);
   pad(*block_, n);
   plan.kernel(*block_, n, pass_);

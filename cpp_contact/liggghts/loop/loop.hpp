@@ -62,6 +62,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
 
  private:
   void read_lists(const Growth* growth);
+  void begin_pass();
   template <Reach reach>
   void gather(const Plan& plan);
   template <Reach reach>
@@ -77,6 +78,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   PairList pairs_;
   std::vector<int> slots_;         // of the pairs, in the list of their first sphere
   LAMMPS_NS::bigint listed_ = -1;  // step in which LIGGGHTS made its lists
+  LAMMPS_NS::bigint passed_ = -1;  // step of the last pass over pairs_, with growth
   double listed_factor_ = 0.0;     // up to which pairs_ holds all pairs that meet
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;

@@ -8,6 +8,7 @@ lists them with their functions and tests.
 # isort: off
 # fmt: off
 from .backbones import ADHESIVE, LAWS
+from .conduction import contact_conductance
 from .johnson import Johnson
 from .pair import E_star, G_star, R_star, m_star, sphere_mass
 from .printed import (
@@ -23,11 +24,11 @@ from .waves import (
 from .yielding import first_yield_speed, yield_speed
 
 __all__ = [  # noqa: RUF022
-    "ADHESIVE", "E_star", "G_star", "Johnson", "LAWS", "R_star", "bridges_restitution", "cavity_mean", "e_n",
-    "elastic_mean", "elastic_wave_share", "energy_split", "first_sliding_yield", "first_yield", "first_yield_mean",
-    "first_yield_speed", "fully_plastic_mean", "hertz_pressure", "history", "impact", "johnson_plane_restitution",
-    "johnson_restitution", "loading_pressure", "m_star", "mean_pressure", "plastic_wave_share", "radiated",
-    "rayleigh_share", "sphere_mass", "subsurface", "surface", "thornton_restitution", "tresca", "unloading_force",
-    "unloading_pressure", "von_mises", "wave_constant", "wu_restitution", "yield_speed",
+    "ADHESIVE", "E_star", "G_star", "Johnson", "LAWS", "R_star", "bridges_restitution", "cavity_mean",
+    "contact_conductance", "e_n", "elastic_mean", "elastic_wave_share", "energy_split", "first_sliding_yield",
+    "first_yield", "first_yield_mean", "first_yield_speed", "fully_plastic_mean", "hertz_pressure", "history", "impact",
+    "johnson_plane_restitution", "johnson_restitution", "loading_pressure", "m_star", "mean_pressure",
+    "plastic_wave_share", "radiated", "rayleigh_share", "sphere_mass", "subsurface", "surface", "thornton_restitution",
+    "tresca", "unloading_force", "unloading_pressure", "von_mises", "wave_constant", "wu_restitution", "yield_speed",
 ]
 # fmt: on
