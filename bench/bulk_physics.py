@@ -20,10 +20,10 @@ import numpy as np
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines.liggghts.engine import Liggghts
-from epdem.scenes.checks import discharge
-from epdem.scenes.columns import last_frame
-from epdem.scenes.plan import plan
+from epdem.scenes.judge.checks import discharge
+from epdem.scenes.plan.plan import plan
 from epdem.scenes.run import run_plan
+from epdem.scenes.tables.columns import last_frame
 
 CASE = Path(__file__).parents[1] / "cases/hopper_beads.toml"
 d, g = 2e-3, 9.81  # mean diameter of the beads [m], gravity [m/s^2]

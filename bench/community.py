@@ -30,9 +30,9 @@ from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.restarts import whole_restarts
 from epdem.errors import CaseError
-from epdem.scenes.columns import last_frame
-from epdem.scenes.run import SceneOutcome
+from epdem.scenes.judge.summary import SceneOutcome
 from epdem.scenes.run import run as run_scene
+from epdem.scenes.tables.columns import last_frame
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES, RUNS = ROOT / "cases/benchmarks", ROOT / "runs/community"

@@ -9,7 +9,7 @@ from epdem.engines import log
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.impacts.plan import Plan
-from epdem.scenes.plan import ScenePlan
+from epdem.scenes.plan.plan import ScenePlan
 
 MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan
 YADE = "yade"  # its own model of Hertz and Mindlin

@@ -19,7 +19,7 @@ from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts.deck import files, memory
 from epdem.engines.restarts import whole_restarts
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 from epdem.theory.backbones import ADHESIVE
 
 ROOT = Path(__file__).parents[1]

@@ -34,8 +34,8 @@ from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.engines.liggghts import launcher
 from epdem.engines.liggghts.properties import per_pair
-from epdem.scenes.meshes import stl_text
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.meshes import stl_text
+from epdem.scenes.plan.plan import plan
 
 # processor time over that of hertz, over that with AVX2, and over that of the launcher before
 LIMITS = {

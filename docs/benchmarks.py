@@ -14,7 +14,7 @@ from pages import load, markdown, replace_tables, store
 
 from epdem.errors import CaseError
 from epdem.report.chart import GREY, Axis, Chart, Panel, Series, save
-from epdem.scenes import results
+from epdem.scenes.tables import results
 from epdem.verification.measured_data import validate
 from epdem.verification.pages import validation_chart
 

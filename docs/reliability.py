@@ -24,7 +24,7 @@ from pages import markdown, replace_tables, store
 from reliability_faults import FAULTS
 
 from epdem.impacts.store import read as read_results
-from epdem.scenes import results
+from epdem.scenes.tables import results
 
 ROOT = Path(__file__).parents[1]
 WORK = ROOT / "runs/reliability"

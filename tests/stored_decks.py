@@ -12,7 +12,7 @@ from epdem.engines import scene_engine, texts_with_reasons
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import Plan, plan
 from epdem.impacts.prediction import predict
-from epdem.scenes.plan import ScenePlan
+from epdem.scenes.plan.plan import ScenePlan
 
 CASES = Path(__file__).parents[1] / "cases"
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}

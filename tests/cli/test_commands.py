@@ -18,7 +18,7 @@ from epdem.base.declarations import declarations
 from epdem.cli.options import answer
 from epdem.engines import ENGINES
 from epdem.engines.citations import of_laws
-from epdem.scenes import summary
+from epdem.scenes.judge import summary
 from epdem.verification import engine_comparison as crosscheck
 
 STEEL = (CASES / "steel_wall.toml").read_text()

@@ -18,7 +18,7 @@ from epdem.errors import CaseError
 from epdem.impacts import run as impacts_run
 from epdem.report import pages
 from epdem.scenes import run as scenes_run
-from epdem.scenes import summary
+from epdem.scenes.judge import summary
 from epdem.studies import fit
 from epdem.studies.sweep import run as sweep_run
 from epdem.verification import contacts, cost, figures, stability

@@ -24,7 +24,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.jobs.engine import check
-from epdem.scenes.plan import plan as scene_plan
+from epdem.scenes.plan.plan import plan as scene_plan
 from stored_decks import CASES, SPHERE, compare, planned
 
 HERE = Path(__file__).parent

@@ -18,9 +18,9 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan as plan_impacts
 from epdem.impacts.prediction import predict
 from epdem.laws.library import Law
-from epdem.scenes import placement
-from epdem.scenes.measures import refuse_measures
-from epdem.scenes.plan import plan
+from epdem.scenes.judge.measures import refuse_measures
+from epdem.scenes.plan import placement
+from epdem.scenes.plan.plan import plan
 from epdem.verification.models.theories import Mdr
 from stored_decks import checked_deck
 

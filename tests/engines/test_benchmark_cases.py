@@ -11,7 +11,7 @@ from epdem.case.scene import load
 from epdem.engines import engine
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.impacts.run import run
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases/benchmarks"
 CHUNG = ["spheres", "wall", "dashpot", "oblique", "spin"]

@@ -13,7 +13,7 @@ import pytest
 from lammps_decks import column, needs_lammps, run
 
 from epdem.engines.lammps import launcher
-from epdem.scenes.meshes import box, stl_text
+from epdem.scenes.plan.meshes import box, stl_text
 
 pytestmark = needs_lammps
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
 
-from epdem.scenes.meshes import rectangle, stl_text
+from epdem.scenes.plan.meshes import rectangle, stl_text
 from marks import thorough
 
 pytestmark = needs_lammps

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, column, lammps, needs_lammps, run, spheres
 
-from epdem.scenes.meshes import box, stl_text
+from epdem.scenes.plan.meshes import box, stl_text
 
 pytestmark = needs_lammps
 

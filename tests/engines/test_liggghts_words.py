@@ -16,7 +16,7 @@ from epdem.base.processes import call
 from epdem.engines import log
 from epdem.engines.liggghts import dump
 from epdem.errors import EngineError
-from epdem.scenes.meshes import stl_text
+from epdem.scenes.plan.meshes import stl_text
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from plugin_decks import Bodies, contact, good, head, materials, per_pair
 
-from epdem.scenes.meshes import stl_text
+from epdem.scenes.plan.meshes import stl_text
 from marks import thorough
 
 pytestmark = pytest.mark.liggghts

@@ -15,7 +15,7 @@ from epdem.engines.yade import launcher
 from epdem.errors import CaseError
 from epdem.impacts.measurement import measure
 from epdem.impacts.run import run as run_impacts
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 from epdem.verification.motion.compare import compare
 from marks import thorough
 from scenes.parts_cases import FLOOR, parts

@@ -37,8 +37,8 @@ from parts_cases import parts
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes.meshes import at_end
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.meshes import at_end
+from epdem.scenes.plan.plan import plan
 
 LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "39 mm"], "size": ["18 mm", "18 mm"]}
 

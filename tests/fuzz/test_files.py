@@ -21,8 +21,8 @@ from epdem.engines import engine, scene_engine
 from epdem.errors import EpdemError
 from epdem.impacts import store
 from epdem.impacts.run import run
-from epdem.scenes import results as scene_store
-from epdem.scenes.results import SceneResults
+from epdem.scenes.tables import results as scene_store
+from epdem.scenes.tables.results import SceneResults
 
 stored_plan = cache(planned)
 FRAMES = sorted(str(p.relative_to(STORED)) for p in STORED.rglob("*.*") if p.suffix != ".toml")

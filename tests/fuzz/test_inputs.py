@@ -25,7 +25,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import COLUMNS, predict
-from epdem.scenes.plan import plan as plan_scene
+from epdem.scenes.plan.plan import plan as plan_scene
 from epdem.tools.own_decks import write
 from stored_decks import checked_deck
 

@@ -15,7 +15,7 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
-from epdem.scenes.model import strengths
+from epdem.scenes.plan.model import strengths
 from epdem.studies.soften import soften
 from epdem.studies.sweep import points
 

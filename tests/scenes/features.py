@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import strategies as st
 from parts_cases import CASE, FLOOR, GLASS, tetrahedron
 
-from epdem.scenes.meshes import stl_text
+from epdem.scenes.plan.meshes import stl_text
 
 DENSITY = {"glass": 2500.0, "steel": 7800.0, "rubber": 1100.0}
 RUBBER = {"young_modulus": "50 MPa", "poisson_ratio": 0.4, "density": "1100 kg/m^3", "yield_stress": "0.8 MPa"}

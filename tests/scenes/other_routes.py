@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem.scenes.model import pair_law
+from epdem.scenes.plan.model import pair_law
 
 
 def assert_frames(p, tables):

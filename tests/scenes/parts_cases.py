@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem.case.toml import read_toml
-from epdem.scenes.meshes import stl_text
+from epdem.scenes.plan.meshes import stl_text
 
 CASES = Path(__file__).parents[2] / "cases"
 GLASS = {

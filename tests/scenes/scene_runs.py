@@ -9,7 +9,7 @@ from epdem.case.scene import SceneCase
 from epdem.engines import scene_engine
 from epdem.engines.restarts import restart_files
 from epdem.scenes import run as scene_run
-from epdem.scenes.plan import ScenePlan, plan
+from epdem.scenes.plan.plan import ScenePlan, plan
 
 
 def value(x: object) -> str:

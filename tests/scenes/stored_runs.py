@@ -14,7 +14,7 @@ from scene_runs import write_case
 from epdem.case.scene import load, parse
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
-from epdem.scenes.plan import ScenePlan, plan
+from epdem.scenes.plan.plan import ScenePlan, plan
 from epdem.scenes.run import run_plan
 
 STORED = Path(__file__).with_name("stored")

@@ -9,8 +9,8 @@ import pytest
 from epdem.case import scene
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes.model import model
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.model import model
+from epdem.scenes.plan.plan import plan
 from epdem.scenes.run import run_plan
 
 pytestmark = pytest.mark.liggghts
@@ -83,7 +83,7 @@ def test_contacts_across_a_gap_are_in_the_table(beds):
 
 def test_the_ledger_of_a_smooth_bed_closes_within_one_percent(tmp_path):
     """Kinetic, gravity, elastic and surface, plastic energy, what adhesion took, and the plate's work."""
-    from epdem.scenes.checks import closure, energy_balance
+    from epdem.scenes.judge.energy_balance import closure, energy_balance
 
     smooth = {
         "friction = 0.5\ntangential_restitution = 0.5": "friction = 0.0",

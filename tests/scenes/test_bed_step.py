@@ -13,8 +13,8 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines import log
 from epdem.engines.liggghts import launcher
-from epdem.scenes.plan import plan
-from epdem.scenes.timestep import bed_share, impact, time_step
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.plan.timestep import bed_share, impact, time_step
 from epdem.theory import timestep
 
 CASES = Path(__file__).parents[2] / "cases"

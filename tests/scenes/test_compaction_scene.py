@@ -15,7 +15,7 @@ from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 COMPACT = {"name": "cavity", "finite_strain": True, "compaction": True}
 

@@ -8,8 +8,8 @@ import pytest
 from scene_runs import run, write_case
 
 from epdem.case.scene import load
-from epdem.scenes import results
-from epdem.scenes.model import pair_law
+from epdem.scenes.plan.model import pair_law
+from epdem.scenes.tables import results
 
 GLASS = {"young_modulus": "10 MPa", "poisson_ratio": 0.3, "density": "2500 kg/m^3", "yield_stress": "0.02 MPa"}
 BOX = {"name": "box", "kind": "box", "x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "20 mm"]}

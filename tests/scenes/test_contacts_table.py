@@ -10,9 +10,9 @@ import pytest
 
 from epdem.case import scene
 from epdem.case.toml import read_toml
-from epdem.scenes import columns
-from epdem.scenes.model import pair_law
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.model import pair_law
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables import columns
 
 CASES = Path(__file__).parents[2] / "cases"
 N = 100_000

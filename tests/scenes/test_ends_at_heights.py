@@ -12,8 +12,8 @@ from test_press import COUNT, HEIGHT, RADIUS, SIDE, evaluated, plate, press, wit
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes import summary
-from epdem.scenes.plan import plan
+from epdem.scenes.judge import summary
+from epdem.scenes.plan.plan import plan
 
 SOLID = COUNT * 4 / 3 * math.pi * RADIUS**3 / SIDE**2  # height [m] of the spheres of the press without void
 DECKS = [ENGINES[0], ENGINES[2]]  # that look between rows at energies and numbers

@@ -12,9 +12,9 @@ from scene_runs import run, write_case
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
-from epdem.scenes.plan import ScenePlan, plan
-from epdem.scenes.timestep import time_step
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.judge.warnings import planned_warnings
+from epdem.scenes.plan.plan import ScenePlan, plan
+from epdem.scenes.plan.timestep import time_step
 
 LID = {"name": "lid", "kind": "plate", "axis": "z", "material": "steel", "size": ["17.9 mm", "17.9 mm"]}
 LID |= {"center": ["0 mm", "0 mm", "15 mm"]}

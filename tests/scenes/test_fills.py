@@ -10,8 +10,8 @@ from parts_cases import BED, GLASS, STEEL, own, parts
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.judge.warnings import planned_warnings
+from epdem.scenes.plan.plan import plan
 
 DENSITY = {"glass": 2500.0, "steel": 7800.0}
 SETTLE = {"kind": "settle", "box": ["40 mm"] * 3, "count": 12, "duration": "20 ms", "walls": "steel"}

@@ -10,7 +10,7 @@ from parts_cases import CASE
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes.timestep import highest_speed
+from epdem.scenes.plan.timestep import highest_speed
 
 COMMON = {"particles": [{"material": "glass", "radius": "1 mm"}], "count": 10, "walls": "steel", "duration": "1 s"}
 

@@ -17,8 +17,8 @@ from epdem.case.scene import load
 from epdem.case.toml import portable_text, read_toml
 from epdem.errors import CaseError
 from epdem.report.pages import write_scene_page
-from epdem.scenes.measures import refuse_measures
-from epdem.scenes.plan import plan
+from epdem.scenes.judge.measures import refuse_measures
+from epdem.scenes.plan.plan import plan
 from epdem.studies.sweep.run import plan as plan_sweep
 from epdem.studies.sweep.run import run as run_sweep
 

@@ -14,8 +14,8 @@ from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import deck as lammps_scene
 from epdem.errors import CaseError, EngineError
-from epdem.scenes.columns import last_frame
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables.columns import last_frame
 
 
 def plane(name, axis, at):

@@ -11,7 +11,7 @@ from scene_runs import run, write_case
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 HOSTS = [
     pytest.param("liggghts", marks=pytest.mark.liggghts),

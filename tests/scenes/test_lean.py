@@ -18,7 +18,7 @@ from epdem.engines import engine
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.scenes.plan import plan as scene_plan
+from epdem.scenes.plan.plan import plan as scene_plan
 from marks import thorough
 from stored_decks import reasons
 

@@ -14,8 +14,8 @@ from stored_runs import CASES
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.judge.warnings import planned_warnings
+from epdem.scenes.plan.plan import plan
 
 
 def test_a_scene_beyond_a_limit_names_its_file_and_writes_nothing(tmp_path):

@@ -31,7 +31,9 @@ from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.jobs.stage import Inputs
-from epdem.scenes import columns, meshes, run
+from epdem.scenes import run
+from epdem.scenes.plan import meshes
+from epdem.scenes.tables import columns
 from epdem.studies.sweep import slurm
 from epdem.tools import own_decks
 from epdem.verification.stability import variants

@@ -12,7 +12,7 @@ from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.engines.restarts import restart_files
 from epdem.jobs.engine import silent
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 LIGGGHTS = pytest.param("liggghts", marks=pytest.mark.liggghts)
 YADE = pytest.param("yade", marks=pytest.mark.yade("module"))

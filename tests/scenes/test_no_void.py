@@ -12,7 +12,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 SIDES = {"name": "sides", "kind": "box", "x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "20 mm"]}
 SIDES |= {"open": ["+z", "-z"], "material": "steel"}

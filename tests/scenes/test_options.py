@@ -15,7 +15,7 @@ from epdem.case.toml import read_toml
 from epdem.cli.main import app
 from epdem.engines.liggghts.deck import deck
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 from stored_decks import reasons
 
 CASES = Path(__file__).parents[2] / "cases"

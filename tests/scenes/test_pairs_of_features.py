@@ -34,8 +34,9 @@ from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as liggghts_tables
 from epdem.errors import CaseError, EngineError
 from epdem.laws.strengths import find_law
-from epdem.scenes import filling, measures
-from epdem.scenes.plan import plan
+from epdem.scenes.judge import measures
+from epdem.scenes.plan import filling
+from epdem.scenes.plan.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
 from epdem.theory.cavity import FINITE_STRAIN

@@ -19,7 +19,7 @@ from epdem.case.scene import load, parse
 from epdem.case.toml import error_context
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep import run as study
 

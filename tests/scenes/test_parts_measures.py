@@ -19,10 +19,10 @@ from epdem.laws.strengths import LawSpec
 from epdem.report.pages import write_scene_page
 from epdem.report.scenes import charts
 from epdem.report.scenes import measures as curves_of
-from epdem.scenes import measures, summary
-from epdem.scenes.columns import units
-from epdem.scenes.plan import plan
-from epdem.scenes.results import read
+from epdem.scenes.judge import measures, summary
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables.columns import units
+from epdem.scenes.tables.results import read
 from epdem.studies.fit import fit
 from epdem.studies.sweep import run as study
 from epdem.studies.sweep.table import numbers_of

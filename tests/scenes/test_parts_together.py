@@ -9,8 +9,8 @@ from scene_runs import run, write_case
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes.measures import curves
-from epdem.scenes.plan import plan
+from epdem.scenes.judge.measures import curves
+from epdem.scenes.plan.plan import plan
 
 TUBE = {"name": "tube", "kind": "cylinder", "from": "-1 mm", "to": "39 mm", "diameter": "16 mm", "material": "steel"}
 PRESS = {"wall": "tube", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "0.1 N", "highest_speed": "0.1 m/s"}

@@ -15,8 +15,9 @@ from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.jobs.engine import Unsupported, check
-from epdem.scenes import measures, placement
-from epdem.scenes.plan import plan
+from epdem.scenes.judge import measures
+from epdem.scenes.plan import placement
+from epdem.scenes.plan.plan import plan
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
 SIZE = 20e-3  # of the room along x and y [m]

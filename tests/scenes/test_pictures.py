@@ -17,9 +17,9 @@ from epdem.errors import CaseError
 from epdem.report import pictures
 from epdem.report import scenes as figures
 from epdem.report.scenes import bed
-from epdem.scenes import checks, measures
-from epdem.scenes.checks import kinetic, rotation
-from epdem.scenes.plan import plan
+from epdem.scenes.judge import checks, measures
+from epdem.scenes.judge.energy_balance import kinetic, rotation
+from epdem.scenes.plan.plan import plan
 
 pytestmark = pytest.mark.figures
 

@@ -21,10 +21,11 @@ from epdem.engines.yade import deck as yade_deck
 from epdem.errors import CaseError
 from epdem.report.pages import scene_page, scene_sentences, write_scene_page
 from epdem.report.scenes import key
-from epdem.scenes import checks, stages, summary
-from epdem.scenes.columns import units
-from epdem.scenes.plan import plan
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.judge import checks, summary
+from epdem.scenes.judge.warnings import planned_warnings, press_warnings
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables import stages
+from epdem.scenes.tables.columns import units
 from epdem.studies.soften import soften
 from epdem.studies.sweep.table import numbers_of, unit
 
@@ -426,7 +427,7 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     spheres = {"step": [ends[1]] * 2, "x": [0.0] * 2, "y": [0.0] * 2, "z": [0.1e-3, 0.41e-3]}
     tables = {"stages": pd.DataFrame(stage), "particles": pd.DataFrame(spheres)}
     number = 3.0 / 0.4e-3 * 2 * RADIUS * math.sqrt(8960 / 40e6)
-    fast, behind = stages.warnings(p, tables)
+    fast, behind = press_warnings(p, tables)
     assert f"phase stage2: the inertial number v/h d sqrt(rho/P) is {number:.2g}, above 0.001" in fast
     assert f"{3.0 * 1e-3 / number:.2g} m/s is slow enough" in fast
     assert behind.startswith("1 spheres have passed wall punch")
@@ -435,11 +436,11 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     data["scene"]["particles"] = [{"material": name, "radius": "50 um", "share": 0.5} for name in ("powder", "heavy")]
     both = stages.inertial_numbers(plan(parse(data)), tables["stages"])
     assert both.to_list() == pytest.approx([math.sqrt(2.0) * number], rel=1e-12)
-    near = stages.warnings(p, tables | {"stages": tables["stages"].assign(error=0.006, relative_density=0.91)})
+    near = press_warnings(p, tables | {"stages": tables["stages"].assign(error=0.006, relative_density=0.91)})
     assert near[0].startswith("phase stage2: 40 MPa, +0.60% beside the 40 MPa asked for; press slower")
     assert near[1].startswith("phase stage2: the relative density is 0.91, and above 0.9 no contact law")
     slow = replace(p, phases=tuple(p.phases[:1]))
-    assert stages.warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []
+    assert press_warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []
 
 
 def test_walls_of_a_press_that_never_yield_beside_some_spheres_are_told():
@@ -534,7 +535,7 @@ def test_a_stage_beside_its_pressure_is_told_above_half_a_percent_and_fails_abov
     def verdicts(error, density=0.8):
         table = pd.DataFrame([stage | {"error": error, "reached": 40e6 * (1 + error), "relative_density": density}])
         table["springback"] = math.nan
-        told = any("asked for" in x for x in stages.warnings(p, {"stages": table}))
+        told = any("asked for" in x for x in press_warnings(p, {"stages": table}))
         rows = pd.DataFrame({"particles": [COUNT]})
         found = checks.checks(p, {"rows": rows, "stages": table}).set_index("key")["passed"]
         assert summary.stages_shown(table)[0]["passed"].item() == (found["stage_pressure"] and found["density"])
@@ -570,7 +571,7 @@ def test_a_stage_that_a_bed_without_void_ends_has_its_last_pressure_and_fails():
     (stage,) = tables["stages"].to_dict("records")
     assert (stage["reached"], stage["opposite_pressure"], stage["error"]) == pytest.approx((6e6, 5e6, -0.4))
     assert not checks.checks(p, tables).set_index("key")["passed"]["stage_pressure"]
-    (said,) = [x for x in stages.warnings(p, tables) if "asked for" in x]
+    (said,) = [x for x in press_warnings(p, tables) if "asked for" in x]
     assert said == "phase stage1: 6 MPa, -40.00% beside the 10 MPa asked for"
 
 

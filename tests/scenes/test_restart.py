@@ -25,8 +25,8 @@ from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
-from epdem.scenes import results
-from epdem.scenes.plan import ScenePlan, plan
+from epdem.scenes.plan.plan import ScenePlan, plan
+from epdem.scenes.tables import results
 from marks import thorough
 
 pytestmark = pytest.mark.liggghts

@@ -16,7 +16,7 @@ from epdem.engines.lammps import tables as tables
 from epdem.errors import CaseError
 from epdem.jobs.engine import check
 from epdem.jobs.stage import write_deck
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 pytestmark = needs_lammps
 SHAKE = {"wall": "table", "kind": "vibrate", "amplitude": ["0.2 mm", "0 m", "0.5 mm"], "frequency": "60 Hz"}

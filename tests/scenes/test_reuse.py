@@ -15,8 +15,8 @@ from epdem.base import paths
 from epdem.engines import engine, scene_engine
 from epdem.errors import CaseError
 from epdem.impacts.run import run as run_impacts
-from epdem.scenes import results
 from epdem.scenes.run import run as run_scene
+from epdem.scenes.tables import results
 from epdem.studies.sweep import run as sweeps
 from marks import thorough
 
@@ -143,7 +143,7 @@ def test_a_disk_that_is_full_at_the_end_costs_no_second_run(host, tmp_path, monk
 
     def ends_on_a_full_disk(out):
         with monkeypatch.context() as disk, pytest.raises(OSError, match="No space"):
-            disk.setattr("epdem.scenes.results.write", full)
+            disk.setattr("epdem.scenes.tables.results.write", full)
             run_scene(write_case(scene(), tmp_path), tool, out=out)
         starts.clear()
 

@@ -9,8 +9,8 @@ from scene_runs import run, write_case
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines.liggghts.primitives import tubes
-from epdem.scenes.plan import plan
-from epdem.scenes.quantities import SPINS
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.plan.quantities import SPINS
 
 ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("lammps", marks=needs_lammps)]
 SIDES = {"x": 10, "y": 10, "z": 15}  # of the room about its middle [mm]

@@ -14,10 +14,11 @@ from stored_runs import data_of
 
 from epdem.case.scene import parse
 from epdem.report import scenes as figures
-from epdem.scenes import checks
-from epdem.scenes.columns import named_rows
-from epdem.scenes.columns import rows as table_of_rows
-from epdem.scenes.plan import ScenePlan, plan
+from epdem.scenes.judge import checks
+from epdem.scenes.judge.energy_balance import energy_balance, largest_gain
+from epdem.scenes.plan.plan import ScenePlan, plan
+from epdem.scenes.tables.columns import named_rows
+from epdem.scenes.tables.columns import rows as table_of_rows
 from epdem.studies.sweep.table import numbers_of, unit
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
@@ -251,7 +252,7 @@ def test_what_shot_takes_along_when_it_leaves_the_room_stays_in_the_ledger():
     gone = table["step"].unique()[7]
     table = table[(table["id"] == 2) | (table["step"] <= gone)]
     no_contacts = pd.DataFrame(columns=["step", "elastic_energy"])
-    found = checks.energy_balance(p, {"rows": rows(p), "particles": table, "contacts": no_contacts}).set_index("step")
+    found = energy_balance(p, {"rows": rows(p), "particles": table, "contacts": no_contacts}).set_index("step")
     first, second = 0.5 * 1e-5 * 30.0**2, 0.5 * 1e-5 * 20.0**2
     assert found["lost_spheres_energy"].to_numpy() == pytest.approx(np.where(found.index > gone, first + 2e-3, 0.0))
     assert found["kinetic"].to_numpy() == pytest.approx(second + np.where(found.index > gone, 0.0, first))
@@ -311,5 +312,5 @@ def test_the_weight_is_not_compared_with_a_sum_of_much_larger_forces(pressed, co
 def test_friction_that_gives_energy_back_fails_a_check():
     """Friction as the rest of a balance: 2 % of the energy that moved came from nothing."""
     table = pd.DataFrame({"kinetic": [1.0, 0.5], "gravity": [0.0, 0.0], "friction": [0.0, -0.02]})
-    assert checks.largest_gain(table) == pytest.approx(-0.02)
-    assert checks.largest_gain(table.assign(friction=[0.0, 0.3])) == 0.0
+    assert largest_gain(table) == pytest.approx(-0.02)
+    assert largest_gain(table.assign(friction=[0.0, 0.3])) == 0.0

@@ -12,10 +12,10 @@ from epdem.case.scene import parse
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError, EngineError
 from epdem.jobs.engine import Feature
-from epdem.scenes import results
-from epdem.scenes.model import pair_law
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.model import pair_law
+from epdem.scenes.plan.plan import plan
 from epdem.scenes.run import run
+from epdem.scenes.tables import results
 
 
 class Stored(Liggghts):

@@ -9,8 +9,8 @@ from scene_runs import run, write_case
 
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
-from epdem.scenes.plan import plan
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.judge.warnings import planned_warnings
+from epdem.scenes.plan.plan import plan
 
 HOSTS = [
     pytest.param("liggghts", marks=pytest.mark.liggghts),

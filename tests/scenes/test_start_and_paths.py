@@ -15,11 +15,11 @@ from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
-from epdem.scenes.columns import place
-from epdem.scenes.limits import overlaps
-from epdem.scenes.meshes import at_end
-from epdem.scenes.plan import plan
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.judge.warnings import planned_warnings
+from epdem.scenes.plan.limits import overlaps
+from epdem.scenes.plan.meshes import at_end
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables.columns import place
 
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["6 mm"] * 2}
 PLATE |= {"material": "steel"}

@@ -16,9 +16,10 @@ from epdem.engines import scene_engine
 from epdem.engines.frames import Frames
 from epdem.engines.liggghts import tables as scene_tables
 from epdem.errors import EngineError
-from epdem.scenes import checks
-from epdem.scenes.columns import NORMAL, UNITS, columns_of_rows, units
-from epdem.scenes.quantities import STRAINS, page
+from epdem.scenes.judge import checks
+from epdem.scenes.judge.energy_balance import closure, energy_balance
+from epdem.scenes.plan.quantities import STRAINS, page
+from epdem.scenes.tables.columns import NORMAL, UNITS, columns_of_rows, units
 
 
 @pytest.fixture(scope="module", params=RUNS)
@@ -141,16 +142,16 @@ def test_forces_on_the_backbone_are_those_of_hertz_and_of_thornton_s_line():
 
 def test_the_energy_balance_adds_up(stored):
     p, tables = stored
-    table, spheres = checks.energy_balance(p, tables), tables["particles"]
+    table, spheres = energy_balance(p, tables), tables["particles"]
     first = spheres[spheres["step"] == table["step"].iloc[0]]
     lift = p.scene.gravity * (first["mass"] * first["z"]).sum()
     assert table["gravity"].iloc[0] == pytest.approx(lift, rel=1e-12, abs=1e-300)
     assert "friction" not in table, "nothing rubs"
     # the work of plate and drum is the sum of means over a row; eight rows are few
-    assert checks.closure(table) < 0.02
+    assert closure(table) < 0.02
     assert (np.diff(table["plastic"]) >= -1e-12 * table["plastic"].max()).all()
     verdicts = checks.checks(p, tables | {"energy_balance": table}).set_index("key")["passed"]
-    assert verdicts["energy_residual"] == (checks.closure(table) <= 0.01)
+    assert verdicts["energy_residual"] == (closure(table) <= 0.01)
     if not p.scene.open_boundary:
         assert verdicts["spheres_in_room"]
 
@@ -161,7 +162,7 @@ def test_the_page_has_the_table_of_quantities():
 
 def test_every_column_has_a_unit_unless_it_is_a_name_or_a_count(stored):
     p, tables = stored
-    found = {c for table in [*tables.values(), checks.energy_balance(p, tables)] for c in table}
+    found = {c for table in [*tables.values(), energy_balance(p, tables)] for c in table}
     named = {row.name: row for row in p.scene.row}
     assert set(named) <= set(tables["rows"]) and {*units(tables["rows"])} >= set(named)
     dents = {f"delta_max_{w.name}" for w in p.scene.planes} & set(tables["particles"])

@@ -9,8 +9,8 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.impacts.prediction import predict
 from epdem.report.pages import scene_sentences as sentences
-from epdem.scenes.quantities import STRAINS
-from epdem.scenes.timestep import impact
+from epdem.scenes.plan.quantities import STRAINS
+from epdem.scenes.plan.timestep import impact
 
 ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("yade", marks=pytest.mark.yade("module"))]
 

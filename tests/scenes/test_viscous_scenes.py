@@ -10,8 +10,8 @@ from scene_runs import run
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines.liggghts.deck import files
-from epdem.scenes.plan import plan
-from epdem.scenes.timestep import time_step
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.plan.timestep import time_step
 from stored_decks import reasons
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -10,8 +10,8 @@ from scene_runs import run, write_case
 
 from epdem.case.scene import parse
 from epdem.engines.liggghts import dump
-from epdem.scenes import results
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables import results
 
 vtk = pytest.importorskip("vtk", reason="VTK is not installed; make test installs it")
 numpy_support = pytest.importorskip("vtk.util.numpy_support")

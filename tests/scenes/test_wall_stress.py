@@ -13,7 +13,7 @@ from scene_runs import run, write_case
 from epdem.case.scene import parse
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}

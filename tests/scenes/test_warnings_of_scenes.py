@@ -14,9 +14,9 @@ from parts_cases import BED, CASES, FLOOR, GLASS, parts
 from epdem.case.scene import load, parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
-from epdem.scenes.columns import rows
-from epdem.scenes.plan import plan
-from epdem.scenes.warnings import measured_warnings, passed_walls, planned_warnings
+from epdem.scenes.judge.warnings import measured_warnings, passed_walls, planned_warnings
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables.columns import rows
 
 BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["10 mm"] * 2}

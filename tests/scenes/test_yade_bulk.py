@@ -18,9 +18,9 @@ from epdem.engines.yade import tables as yade_tables
 from epdem.engines.yade.launcher import OUT, environment
 from epdem.errors import CaseError, EngineError
 from epdem.jobs.engine import check
-from epdem.scenes import placement
-from epdem.scenes.columns import named_rows
-from epdem.scenes.plan import plan
+from epdem.scenes.plan import placement
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables.columns import named_rows
 
 CASES = Path(__file__).parents[2] / "cases"
 BEADS = {"box": '["9 mm", "9 mm", "30 mm"]', "count": "40", "duration": '"0.3 s"'}

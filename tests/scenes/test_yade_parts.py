@@ -12,7 +12,7 @@ from test_parts_motions import FALL, PLATE, assert_the_lid_shakes_on, moved
 from epdem.case.scene import parse
 from epdem.engines.yade import deck as scene_deck
 from epdem.errors import CaseError
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 
 @pytest.mark.yade("module")

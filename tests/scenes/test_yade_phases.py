@@ -11,8 +11,8 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import EngineError
-from epdem.scenes.columns import last_frame
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables.columns import last_frame
 
 pytestmark = pytest.mark.yade("module")
 

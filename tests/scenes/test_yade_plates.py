@@ -11,7 +11,7 @@ from test_parts_motions import PLATE
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
-from epdem.scenes.plan import plan
+from epdem.scenes.plan.plan import plan
 
 DIAGONAL = {"on": (2.0, 2.0), "beside": (4.0, -1.0)}  # x, y [mm] of a plate about 0, 0
 YOUNG = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)

@@ -10,7 +10,7 @@ from test_pages import blocks, play
 
 from epdem import Case, calibrate, deck, predict, read, run, sweep
 from epdem.errors import CaseError
-from epdem.scenes import results as scene_results
+from epdem.scenes.tables import results as scene_results
 from epdem.theory.indentation import VICKERS
 
 ROOT = Path(__file__).parents[2]

@@ -20,7 +20,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
-from epdem.scenes.model import strengths
+from epdem.scenes.plan.model import strengths
 from epdem.studies.soften import soften
 from epdem.theory.adhesion import sticking_speed
 

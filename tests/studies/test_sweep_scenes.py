@@ -17,7 +17,7 @@ from epdem import run as api_run
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import EngineError
 from epdem.report.sweeps import _by_key
-from epdem.scenes import results
+from epdem.scenes.tables import results
 from epdem.studies.sweep import folder, run, slurm
 
 pytestmark = pytest.mark.liggghts

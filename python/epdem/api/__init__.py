@@ -28,11 +28,11 @@ from ..impacts.prediction import predict as predict_experiment
 from ..impacts.run import Outcome
 from ..impacts.run import run as run_impacts
 from ..jobs.stage import write_deck
-from ..scenes.columns import units as scene_units
-from ..scenes.plan import plan as plan_scene
-from ..scenes.run import SceneOutcome
+from ..scenes.judge.summary import SceneOutcome
+from ..scenes.judge.warnings import planned_warnings
+from ..scenes.plan.plan import plan as plan_scene
 from ..scenes.run import run as run_scene
-from ..scenes.warnings import planned_warnings
+from ..scenes.tables.columns import units as scene_units
 from ..studies.calibrate import Calibration, from_measurement
 from ..studies.fit import Fit, Targets, fit
 from ..studies.sweep import run as study

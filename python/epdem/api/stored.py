@@ -11,8 +11,8 @@ from ..base import tables as h5
 from ..errors import CaseError
 from ..impacts import store
 from ..impacts.comparison import UNITS
-from ..scenes import results as scene_results
-from ..scenes.columns import units as scene_units
+from ..scenes.tables import results as scene_results
+from ..scenes.tables.columns import units as scene_units
 from ..studies.sweep import folder as sweep_folder
 from ..studies.sweep.table import collect
 from .arguments import take

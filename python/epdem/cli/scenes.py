@@ -28,8 +28,8 @@ def run_scene(
     from ..case.scene import load
     from ..engines import scene_engine
     from ..report.pages import write_scene_page
-    from ..scenes import summary
-    from ..scenes.plan import plan
+    from ..scenes.judge import summary
+    from ..scenes.plan.plan import plan
     from ..scenes.run import run
 
     tool = scene_engine(engine)
@@ -59,7 +59,7 @@ def view(
     from ..case.scene import load
     from ..case.toml import error_context
     from ..report import pictures
-    from ..scenes.plan import plan
+    from ..scenes.plan.plan import plan
 
     with error_context(case):
         p = plan(load(case))

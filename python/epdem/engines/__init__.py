@@ -7,7 +7,7 @@ from ..errors import CaseError
 from ..impacts.engine import ImpactEngine, Trajectory
 from ..impacts.plan import Plan
 from ..jobs.engine import KINDS
-from ..scenes.plan import SceneEngine, ScenePlan
+from ..scenes.plan.plan import SceneEngine, ScenePlan
 from .embedded import Embedded
 from .lammps.engine import Lammps
 from .liggghts.engine import Liggghts

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
-from ..scenes.plan import ScenePlan
+from ..scenes.plan.plan import ScenePlan
 
 # by kind: name of the file of a step, the steps, the table of one file
 Kinds = dict[str, tuple[str, list[int], Callable[[Path], pd.DataFrame]]]

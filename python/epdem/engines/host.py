@@ -19,11 +19,12 @@ from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
 from ..jobs.engine import Engine, Report, Unsupported, check_law, silent
 from ..jobs.stage import Tables, parts_hash
-from ..scenes.columns import named_rows, with_first_works
-from ..scenes.limits import refuse_bodies_in_moved_walls
-from ..scenes.model import Model
-from ..scenes.plan import Phase, Resumed, ScenePlan
-from ..scenes.plan import plan as plan_scene
+from ..scenes.plan.limits import refuse_bodies_in_moved_walls
+from ..scenes.plan.model import Model
+from ..scenes.plan.phases import Phase
+from ..scenes.plan.plan import Resumed, ScenePlan
+from ..scenes.plan.plan import plan as plan_scene
+from ..scenes.tables.columns import named_rows, with_first_works
 from . import log
 from .frames import Frames
 from .input_script import impact_data

@@ -14,9 +14,11 @@ from ..case.walls import PlateWall
 from ..errors import CaseError
 from ..impacts.plan import Group, Plan, room, side_by_side
 from ..laws.strengths import ADHESION
-from ..scenes.limits import TOUCH, PressedBed, bed_of, closing_speed
-from ..scenes.model import Model, Type
-from ..scenes.plan import LAG, MISS, ROUNDING, SLOWING, PhaseSteps, ScenePlan
+from ..scenes.plan.beds import PressedBed, bed_of, closing_speed
+from ..scenes.plan.limits import TOUCH
+from ..scenes.plan.model import Model, Type
+from ..scenes.plan.phases import LAG, MISS, SLOWING, PhaseSteps
+from ..scenes.plan.plan import ROUNDING, ScenePlan
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4

@@ -11,8 +11,10 @@ import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
-from ..scenes import columns, quantities
-from ..scenes.plan import NO_VOID, NOT_REACHED, ScenePlan
+from ..scenes.plan import quantities
+from ..scenes.plan.phases import NO_VOID, NOT_REACHED
+from ..scenes.plan.plan import ScenePlan
+from ..scenes.tables import columns
 
 _LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
 _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d+)$")

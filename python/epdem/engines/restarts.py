@@ -10,7 +10,7 @@ from ..base.files import stored_results
 from ..base.processes import ROW
 from ..errors import CaseError
 from ..jobs.engine import Report
-from ..scenes.plan import ScenePlan
+from ..scenes.plan.plan import ScenePlan
 from . import log
 from .frames import Frames
 from .input_script import StopCondition

@@ -19,12 +19,11 @@ from ..impacts.prediction_report import yielding
 from ..impacts.run import Outcome
 from ..impacts.summary import against_measured, largest_errors
 from ..laws.strengths import find_law
-from ..scenes.columns import units
-from ..scenes.plan import ScenePlan
-from ..scenes.quantities import STRAINS
-from ..scenes.run import SceneOutcome
-from ..scenes.stages import against_measured as against_measured_densities
-from ..scenes.summary import FIRST, checked, results, stages_shown
+from ..scenes.judge.summary import FIRST, SceneOutcome, checked, results, stages_shown
+from ..scenes.plan.plan import ScenePlan
+from ..scenes.plan.quantities import STRAINS
+from ..scenes.tables.columns import units
+from ..scenes.tables.stages import against_measured as against_measured_densities
 from ..theory.validity import SMALL_DEFORMATION
 from . import impacts, scenes
 from .page import NAME, Facts, Lines, Page, Part, Rows, write

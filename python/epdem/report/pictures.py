@@ -13,11 +13,12 @@ from ..base.readable import in_words
 from ..case.motions import FloatArray
 from ..case.walls import Room
 from ..errors import CaseError
-from ..scenes import placement
-from ..scenes.checks import kinetic
-from ..scenes.columns import last_frame, units
-from ..scenes.meshes import at_end, box, sheet, tube
-from ..scenes.plan import Phase, ScenePlan
+from ..scenes.judge.energy_balance import kinetic
+from ..scenes.plan import placement
+from ..scenes.plan.meshes import at_end, box, sheet, tube
+from ..scenes.plan.phases import Phase
+from ..scenes.plan.plan import ScenePlan
+from ..scenes.tables.columns import last_frame, units
 from .chart import Axis
 
 AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen

@@ -10,9 +10,9 @@ import pandas as pd
 
 from ..base.readable import in_words
 from ..jobs.stage import Tables
-from ..scenes import stages
-from ..scenes.measures import PRESS_FIGURES
-from ..scenes.plan import ScenePlan
+from ..scenes.judge.measures import PRESS_FIGURES
+from ..scenes.plan.plan import ScenePlan
+from ..scenes.tables import stages
 from .chart import GREY, INK, PALETTE, Axis, Panel, Series
 
 MEASURED_POINTS = 5  # kind of marker, as of measured impacts

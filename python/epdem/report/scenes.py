@@ -10,11 +10,11 @@ from ..base.readable import in_words
 from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Histogram
 from ..jobs.stage import Tables
-from ..scenes import checks
-from ..scenes.columns import LOADS, place, units
-from ..scenes.measures import FRAME_FIGURES, PRESS_FIGURES, curve
-from ..scenes.plan import ScenePlan
-from ..scenes.run import SceneOutcome
+from ..scenes.judge import checks
+from ..scenes.judge.measures import FRAME_FIGURES, PRESS_FIGURES, curve
+from ..scenes.judge.summary import SceneOutcome
+from ..scenes.plan.plan import ScenePlan
+from ..scenes.tables.columns import LOADS, place, units
 from . import pictures, press
 from .chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from .page import Picture

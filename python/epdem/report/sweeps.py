@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ..base.readable import in_words
-from ..scenes.checks import CHECKS
+from ..scenes.judge.checks import CHECKS
 from .chart import PALETTE, Axis, Chart, Dash, Panel, Series
 from .impacts import SPEED
 from .page import Page, Part, Rows

@@ -2,49 +2,28 @@
 """A scene from case file to results.h5: deck, run, tables, energy balance, checks; and its continuation."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..base import __version__
 from ..base.files import ResultsFolder, claim, results_folder
 from ..base.paths import DEFAULT_ENGINE
 from ..case.plausibility import case_warnings
-from ..case.scene import SceneCase, load
+from ..case.scene import load
 from ..case.toml import LoadedCase, error_context, file_names, text_of
 from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from ..jobs.engine import Feature, Report, check, refusal, refuse_ranks, silent
 from ..jobs.stage import Inputs, Stage, Tables, inputs, stage, without_comments
-from . import checks, measures, results, stages
-from .plan import Resumed, SceneEngine, ScenePlan, plan
-from .timestep import leading_impact
-from .warnings import lost_spheres, measured_warnings, passed_walls, planned_warnings
+from .judge import checks, measures
+from .judge.energy_balance import energy_balance
+from .judge.summary import SceneOutcome
+from .judge.warnings import lost_spheres, measured_warnings, passed_walls, planned_warnings
+from .plan.plan import Resumed, SceneEngine, ScenePlan, plan
+from .plan.timestep import leading_impact
+from .tables import results, stages
 
 Progress = Callable[[int, int], None]  # (step, steps of the run)
-
-
-@dataclass
-class SceneOutcome:
-    """Outcome of a scene run."""
-
-    plan: ScenePlan
-    folder: Path
-    results: results.SceneResults
-    seconds: float
-    reused: bool = False
-    resumed_from: int | None = None
-    warnings: list[str] = field(default_factory=list)
-
-    @property
-    def case(self) -> SceneCase:
-        return self.plan.case
-
-    @property
-    def passed(self) -> bool:
-        """Whether all checks of the scene hold."""
-        checks = self.results.tables.get("checks")
-        return checks is None or bool(checks["passed"].all())
 
 
 def _facts(p: ScenePlan) -> object:
@@ -201,7 +180,7 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
             raise EngineError(
                 f"{folder}: no frame holds a sphere; all have left the room, see the engine's output there"
             )
-        tables["energy_balance"] = checks.energy_balance(p, tables)
+        tables["energy_balance"] = energy_balance(p, tables)
     if p.scene.stages:
         tables["rows"] = stages.with_densities(p, tables)
         tables["stages"] = stages.table(p, tables)

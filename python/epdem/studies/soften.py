@@ -143,7 +143,7 @@ def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
     from ..case import scene as scenes
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
-    from ..scenes.timestep import leading_impact
+    from ..scenes.plan.timestep import leading_impact
 
     if scenes.is_scene(data):
         return predict(leading_impact(scenes.parse(data, path)))

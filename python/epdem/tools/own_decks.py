@@ -16,8 +16,8 @@ from ..engines.host import job_of
 from ..engines.liggghts.deck import deck as scene_deck
 from ..engines.liggghts.engine import Liggghts
 from ..errors import CaseError
-from ..scenes.meshes import stl_text
-from ..scenes.plan import ScenePlan
+from ..scenes.plan.meshes import stl_text
+from ..scenes.plan.plan import ScenePlan
 
 
 class _Sandbox(ImmutableSandboxedEnvironment):

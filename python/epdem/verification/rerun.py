@@ -15,8 +15,8 @@ from ..engines import scene_engine
 from ..errors import CaseError
 from ..impacts import run as impacts
 from ..impacts import store
-from ..scenes import results as scene_store
 from ..scenes import run as scenes
+from ..scenes.tables import results as scene_store
 from .models import engine
 from .runner import Progress, silent
 

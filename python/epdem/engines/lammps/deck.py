@@ -12,11 +12,12 @@ from ...base import rendering as decks
 from ...case.walls import StlWall
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
-from ...scenes import placement, quantities
-from ...scenes.columns import columns_of_frames
-from ...scenes.meshes import stl_text
-from ...scenes.model import Model
-from ...scenes.plan import PhaseSteps, ScenePlan
+from ...scenes.plan import placement, quantities
+from ...scenes.plan.meshes import stl_text
+from ...scenes.plan.model import Model
+from ...scenes.plan.phases import PhaseSteps
+from ...scenes.plan.plan import ScenePlan
+from ...scenes.tables.columns import columns_of_frames
 from ..host import refuse
 from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
 from . import words

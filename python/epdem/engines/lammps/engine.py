@@ -10,7 +10,7 @@ from ...base.processes import most_ranks
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 from ...theory.sources import Source
 from ..host import Host
 from ..input_script import impact_model

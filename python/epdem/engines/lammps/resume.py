@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...base import rendering as decks
-from ...scenes.plan import ScenePlan
+from ...scenes.plan.plan import ScenePlan
 from ..restarts import later, phase_at
 from . import launcher
 from .deck import Restart, SceneDeck, deck

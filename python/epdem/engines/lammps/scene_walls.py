@@ -11,10 +11,11 @@ from ...base.rendering import number, wall_id
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
 from ...jobs.engine import Unsupported
-from ...scenes import placement
-from ...scenes.limits import PressedBed
-from ...scenes.meshes import spans, surface_rotation
-from ...scenes.plan import Phase, ScenePlan
+from ...scenes.plan import placement
+from ...scenes.plan.beds import PressedBed
+from ...scenes.plan.meshes import spans, surface_rotation
+from ...scenes.plan.phases import Phase
+from ...scenes.plan.plan import ScenePlan
 from ..host import refuse, words_of_motion
 from ..input_script import WRITE_RESTART, bed_height, press_speed
 from . import words

@@ -4,7 +4,7 @@
 from ...base.declarations import declarations
 from ...base.rendering import number
 from ...laws.strengths import ADHESION
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 from ..input_script import finite
 
 

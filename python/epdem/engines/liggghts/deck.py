@@ -12,12 +12,12 @@ from ...base.declarations import declarations
 from ...errors import CaseError
 from ...impacts.plan import Plan
 from ...jobs.engine import Unsupported
-from ...scenes import quantities
-from ...scenes.columns import GROWTH
-from ...scenes.meshes import stl_text
-from ...scenes.model import Model
-from ...scenes.plan import ScenePlan
-from ...scenes.quantities import PARTICLES, SPINS
+from ...scenes.plan import quantities
+from ...scenes.plan.meshes import stl_text
+from ...scenes.plan.model import Model
+from ...scenes.plan.plan import ScenePlan
+from ...scenes.plan.quantities import PARTICLES, SPINS
+from ...scenes.tables.columns import GROWTH
 from ..host import refuse_narrow
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes

@@ -12,7 +12,7 @@ from ...errors import EngineError
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 from ...theory.sources import Source
 from .. import log
 from ..host import Host

@@ -8,8 +8,9 @@ from typing import Any
 
 from ...base.rendering import number, wall_id
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ...scenes.meshes import surface_rotation
-from ...scenes.plan import Phase, ScenePlan
+from ...scenes.plan.meshes import surface_rotation
+from ...scenes.plan.phases import Phase
+from ...scenes.plan.plan import ScenePlan
 from ..host import words_of_motion
 from ..input_script import press_speed
 from .primitives import torque

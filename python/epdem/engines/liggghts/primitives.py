@@ -8,7 +8,7 @@ import pandas as pd
 
 from ...base.rendering import number, wall_id
 from ...case.walls import CylinderWall, PlaneWall
-from ...scenes.plan import ScenePlan
+from ...scenes.plan.plan import ScenePlan
 from ..input_script import torque_origin
 
 WIDE = 3.0  # radius of a cylinder over the largest radius of a sphere: LIGGGHTS divides by zero on the axis

@@ -9,8 +9,8 @@ import numpy as np
 from ...base.declarations import declarations
 from ...errors import CaseError
 from ...jobs.engine import Unsupported
-from ...scenes.model import Model
-from ...scenes.plan import ScenePlan
+from ...scenes.plan.model import Model
+from ...scenes.plan.plan import ScenePlan
 from ..input_script import finite
 
 Rows = Sequence[Sequence[float]]  # of a matrix

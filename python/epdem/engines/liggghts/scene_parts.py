@@ -10,10 +10,11 @@ from functools import partial
 from ...base import rendering as decks
 from ...case.parts import Sphere
 from ...case.walls import Room
-from ...scenes import filling
-from ...scenes.limits import PressedBed
-from ...scenes.meshes import surface_rotation
-from ...scenes.plan import PhaseSteps, ScenePlan
+from ...scenes.plan import filling
+from ...scenes.plan.beds import PressedBed
+from ...scenes.plan.meshes import surface_rotation
+from ...scenes.plan.phases import PhaseSteps
+from ...scenes.plan.plan import ScenePlan
 from ..input_script import (
     WRITE_RESTART,
     StopCondition,

@@ -14,8 +14,9 @@ from ...errors import EngineError
 from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
-from ...scenes import columns, quantities
-from ...scenes.plan import ScenePlan
+from ...scenes.plan import quantities
+from ...scenes.plan.plan import ScenePlan
+from ...scenes.tables import columns
 from .. import log
 from ..frames import Frames, Kinds
 from . import dump

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import atan
 
 from ...base.declarations import declarations
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 
 
 @dataclass(frozen=True)

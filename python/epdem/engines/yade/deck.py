@@ -9,9 +9,10 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...impacts.plan import Group, Plan, side_by_side
-from ...scenes import placement
-from ...scenes.plan import PhaseSteps, ScenePlan
-from ...scenes.quantities import WORKS
+from ...scenes.plan import placement
+from ...scenes.plan.phases import PhaseSteps
+from ...scenes.plan.plan import ScenePlan
+from ...scenes.plan.quantities import WORKS
 from ..host import refuse, refuse_narrow
 from .classes import ContactClasses, functors, materials
 from .scene_parts import (

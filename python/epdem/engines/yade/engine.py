@@ -13,8 +13,8 @@ from ...impacts.engine import check_features
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan, side_by_side
 from ...jobs.engine import Feature, Unsupported
-from ...scenes.model import Model
-from ...scenes.plan import ScenePlan
+from ...scenes.plan.model import Model
+from ...scenes.plan.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
 from ..input_script import impact_model

@@ -13,11 +13,12 @@ from ...base import rendering as decks
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.walls import BoxWall, PlaneWall, PlateWall
 from ...jobs.engine import Unsupported
-from ...scenes import placement
-from ...scenes.filling import Insertion
-from ...scenes.limits import PressedBed
-from ...scenes.meshes import spans, surface_rotation
-from ...scenes.plan import LAG, SLOWING, Phase, PhaseSteps, ScenePlan
+from ...scenes.plan import placement
+from ...scenes.plan.beds import PressedBed
+from ...scenes.plan.filling import Insertion
+from ...scenes.plan.meshes import spans, surface_rotation
+from ...scenes.plan.phases import LAG, SLOWING, Phase, PhaseSteps
+from ...scenes.plan.plan import ScenePlan
 from ..host import words_of_motion
 from ..input_script import BORNE, bed_height, ended_at, first_look, height_words, torque_origin, wanted_share
 

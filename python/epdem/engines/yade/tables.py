@@ -11,8 +11,8 @@ from ...errors import EngineError
 from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
-from ...scenes import columns
-from ...scenes.plan import ScenePlan
+from ...scenes.plan.plan import ScenePlan
+from ...scenes.tables import columns
 from .. import log
 from ..frames import Frames, Kinds
 from .deck import axes

@@ -30,7 +30,7 @@ from ...impacts.experiment import experiment
 from ...impacts.run import fill, prepare, stored_results
 from ...jobs.engine import Feature, require
 from ...jobs.engine import check as check_job
-from ...scenes.plan import plan as plan_scene
+from ...scenes.plan.plan import plan as plan_scene
 from ...scenes.run import run as run_scene
 from . import folder as store
 from . import local, points, table

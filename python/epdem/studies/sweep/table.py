@@ -12,10 +12,10 @@ from ...case.parts import MEASURES
 from ...case.scene import parse
 from ...case.units import to_si
 from ...impacts.comparison import UNITS
-from ...scenes.checks import CHECKS
-from ...scenes.columns import UNITS as SCENE_UNITS
-from ...scenes.columns import unit_of_load
-from ...scenes.results import SceneResults
+from ...scenes.judge.checks import CHECKS
+from ...scenes.tables.columns import UNITS as SCENE_UNITS
+from ...scenes.tables.columns import unit_of_load
+from ...scenes.tables.results import SceneResults
 from . import folder as store
 from .folder import Sweep
 
@@ -75,7 +75,7 @@ def write(sweep: Sweep, folder: Path) -> pd.DataFrame:
 def numbers_of(results: SceneResults) -> dict[str, float]:
     """COLUMN_last, _min, _max and _mean (over the last fifth) of every column of rows and measures, and each check.
 
-    Forces and torques that a case measures are columns of the rows. The name of a check is its key (scenes/checks.py).
+    Forces and torques that a case measures are columns of the rows. The name of a check is its key (`CHECKS`).
     Of a press also PHASE_COLUMN of the stages, as stage1_relative_density.
     """
     numbers: dict[str, float] = {}

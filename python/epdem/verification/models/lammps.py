@@ -12,7 +12,7 @@ from ...engines.lammps.engine import Lammps
 from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 from .theories import Mdr, OtherLaw
 
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above

@@ -12,7 +12,7 @@ from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import Property, elastic, per_pair, per_type, scalar
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature, Report, silent
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 from .theories import EXPONENT, STIFFENING, Edinburgh, Luding, OtherLaw
 
 

@@ -11,7 +11,7 @@ from ...engines.yade.deck import Anvil, ImpactDeck
 from ...engines.yade.engine import Yade
 from ...impacts.plan import Plan
 from ...jobs.engine import Report, silent
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 from .theories import Luding, OtherLaw
 
 

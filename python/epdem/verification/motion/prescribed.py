@@ -23,7 +23,7 @@ from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...laws.library import Array
-from ...scenes.model import Model
+from ...scenes.plan.model import Model
 
 WIDTHS = {"t": 1, "dt": 1} | {f"{name}_{side}": n for name, n in (("x", 3), ("v", 3), ("q", 4)) for side in "ij"}
 WIDTHS |= {f"{name}_{side}": 3 for name in ("omega", "F", "T") for side in "ij"}

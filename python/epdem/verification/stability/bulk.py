@@ -16,12 +16,12 @@ from ...base.tables import write_csv
 from ...case.scene import SceneCase
 from ...errors import CaseError
 from ...laws.strengths import default_numbers, find_law, yields_by_stress
-from ...scenes.checks import energy_balance, kinetic
-from ...scenes.columns import last_frame
-from ...scenes.model import pair_law
-from ...scenes.plan import SceneEngine, ScenePlan, plan
+from ...scenes.judge.energy_balance import energy_balance, kinetic
+from ...scenes.plan.model import pair_law
+from ...scenes.plan.plan import SceneEngine, ScenePlan, plan
+from ...scenes.plan.timestep import stable_step
 from ...scenes.run import run_plan
-from ...scenes.timestep import stable_step
+from ...scenes.tables.columns import last_frame
 from ...theory.backbones import LAWS
 from ..runner import STUDIES, Progress, Row, silent
 from .two_walls import stored

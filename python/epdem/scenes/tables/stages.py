@@ -6,17 +6,14 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..base.readable import in_words
-from ..case.outputs import Stages
-from ..case.walls import PlateWall
-from .checks import work_of_walls
-from .columns import FORCE, NORMAL, place
-from .limits import DENSE
-from .plan import Phase, ScenePlan
+from ...base.readable import in_words
+from ...case.outputs import Stages
+from ...case.walls import PlateWall
+from ..plan.phases import Phase
+from ..plan.plan import ScenePlan
+from .columns import FORCE, NORMAL, place, work_of_walls
 
 SLOW = 1e-3  # inertial number below which a bed deforms as if at rest [GDR MiDi 2004, Eur. Phys. J. E 14, 341]
-NEAR = 5e-3  # error of the pressure of a stage from which on a sentence names it
-FAST = 3.0  # rms speed of a bed over the speed of its punch; spheres that the punch hits fly at twice its speed at most
 FITTED = 0.95  # relative density up to which a stage counts for a fit
 Tables = dict[str, pd.DataFrame]
 
@@ -161,74 +158,3 @@ def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
 def compared(stages: pd.DataFrame) -> pd.DataFrame:
     """The rows of loading that lines through stages are fitted to: without those that are nearly solid."""
     return stages[stages["relative_density"] < FITTED]
-
-
-def warnings(p: ScenePlan, tables: Tables) -> list[str]:
-    """A sentence for a stage beside its pressure, for a bed too dense for the laws, for a press that is too fast for an
-    even stress while it loads, for an ejection, and for spheres that have passed the punch."""
-    declared = p.scene.stages
-    assert declared is not None
-    table, found = tables["stages"], []
-    numbers = inertial_numbers(p, loaded(p, table))
-    found += [
-        f"phase {row['phase']}: {in_words(row['reached'], 'Pa')}, {row['error']:+.2%} beside the "
-        f"{in_words(row['asked'], 'Pa')} asked for" + "; press slower near it" * (row["error"] > 0.0)
-        for row in table[table["error"].abs() > NEAR].to_dict("records")
-    ]
-    dense = table[table["relative_density"] > DENSE]
-    if not dense.empty:
-        worst = dense.loc[dense["relative_density"].idxmax()]
-        found.append(
-            f"phase {worst['phase']}: the relative density is {worst['relative_density']:.3g}, and above {DENSE} no "
-            "contact law of spheres gives the pressure (docs/press.md); press less"
-        )
-    if not numbers.empty and numbers.max() > SLOW:
-        name = tables["stages"]["phase"][numbers.idxmax()]
-        speed = next(towards(p, declared, phase) for phase in p.phases if phase.name == name)
-        found.append(
-            f"phase {name}: the inertial number v/h d sqrt(rho/P) is {numbers.max():.2g}, above {SLOW:g}, so that "
-            f"inertia bears a part of the pressure; {speed * SLOW / numbers.max():.2g} m/s is slow enough"
-        )
-    found += [
-        f"phase {phase.name}: its forces are no results: after a release the law leaves all stress on the sides, "
-        "which is 2.1 to 3.2 times that of finite elements at E/Y = 120, 1.3 to 1.7 times at 30, and more below a "
-        "relative density of 0.8 (docs/press.md)"
-        for phase in p.phases
-        if np.any(phase.velocity(declared.against)) and towards(p, declared, phase) == 0.0
-    ]
-    if "particles" in tables and (behind := _behind(p, tables)):
-        found.append(
-            f"{behind} spheres have passed wall {declared.wall}, and pressures and densities are wrong: the force of a "
-            "contact with a hard wall grows up to an overlap of 0.9 radii; give the walls the material of the spheres, "
-            "lower pressures, or smaller spheres"
-        )
-    return found
-
-
-def gains_energy(p: ScenePlan, tables: Tables) -> list[str]:
-    """A sentence for a bed that gains energy: by its balance, or because it moves faster than a punch can drive it."""
-    declared, checks, rows = p.scene.stages, tables["checks"], tables["rows"]
-    assert declared is not None
-    mass, fast = volume(p, tables) * max(p.case.materials[part.material].density for part in p.scene.filled), False
-    for phase, times in zip(p.phases, p.phase_table.to_dict("records"), strict=True):
-        during = rows[(rows["step"] > times["begin"]) & (rows["step"] <= times["end"])]
-        speed = max(0.0, towards(p, declared, phase))
-        fast |= speed > 0.0 and bool((during["kinetic_energy"] > 0.5 * mass * (FAST * speed) ** 2).any())
-    if not fast and checks[checks["key"].isin(["energy_residual", "energy_gained"])]["passed"].all():
-        return []
-    step = max(phase.time_step for phase in p.phases)
-    return [
-        f"the pressed bed gains energy that no wall puts in: its time step, {step:.2g} s, is too large, and its "
-        f"pressures and densities are wrong; give numerics.time_step = '{0.5 * step:.2g} s'"
-    ]
-
-
-def _behind(p: ScenePlan, tables: Tables) -> int:
-    """Largest number of spheres in a frame at the end of a phase whose centres are behind the punch."""
-    stages, spheres = tables["stages"], tables["particles"]
-    declared = p.scene.stages
-    assert declared is not None
-    axis, at = against(p, declared, p.time_at(stages["step"].to_numpy()))
-    height, begin = (spheres["step"].map(pd.Series(x, stages["step"])) for x in (stages["height"].to_numpy(), at))
-    counts = (np.abs(spheres["xyz"[axis]] - begin) > height).groupby(spheres["step"]).sum()
-    return int(counts.max())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls that a force drives: the speed up to which dashpots leave the servo stable, and the force that a phase reached.
+"""Walls that a force drives: the speed up to which dashpots leave the servo stable.
 
 The speed of the wall is v (1 - F/F_0), and v is the stable one where spheres touch the wall. The force F of a step has
 the dashpots' part n c times the speed of the step before, so that the speed alternates with growing amplitude where
@@ -9,23 +9,18 @@ n c v/F_0 > 1.
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
-from ..case.motions import FloatArray, Move, PressMove
-from ..case.parts import Parts
-from ..theory.pair import E_star
-from ..theory.viscous import damping_ratio
+from ...case.motions import FloatArray, Move, PressMove
+from ...case.parts import Parts
+from ...theory.pair import E_star
+from ...theory.viscous import damping_ratio
 from .model import Model
-
-if TYPE_CHECKING:
-    from .plan import Phase, ScenePlan
+from .phases import Phase
 
 GAIN = 0.5  # largest n c v/F_0
 COVER = 0.4  # share of a wall that the circles of the spheres in contact with it cover
-TAIL, REACHED = 0.2, 0.05  # of a phase, over which the force is averaged; of the force
 
 
 def stable_speed(m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, move: PressMove) -> float:
@@ -50,8 +45,8 @@ def stable_speed(m: Model, scene: Parts, triangles: Mapping[str, FloatArray], co
 
 
 def limited(
-    m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, phases: Iterable["Phase"]
-) -> Iterator["Phase"]:
+    m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, phases: Iterable[Phase]
+) -> Iterator[Phase]:
     """The phases, in which no wall that a force drives touches spheres at more than its stable speed."""
 
     def slow(move: Move) -> Move:
@@ -61,33 +56,3 @@ def limited(
 
     for phase in phases:
         yield replace(phase, case=phase.case.model_copy(update={"move": [slow(move) for move in phase.case.move]}))
-
-
-def slower(p: "ScenePlan") -> list[str]:
-    """A sentence for each wall that a force drives and that is slower in contact than the case says."""
-    return [
-        f"scene.phase.{phase.name}.move: with the dashpots of [viscous] wall {name} would oscillate at highest_speed = "
-        f"{press.highest_speed:g} m/s; where spheres touch it, it has at most {press.speed_in_contact:g} m/s"
-        for phase in p.phases
-        for name, move in phase.moves.items()
-        if (press := move.press) and press.speed_in_contact < press.highest_speed
-    ]
-
-
-def not_reached(p: "ScenePlan", rows: pd.DataFrame) -> list[str]:
-    """A sentence for each wall that a force drives whose force is not the requested one at the end of a phase, which no
-    condition ends."""
-    found, begin = [], 0
-    for phase in p.phases:
-        presses = {name: move.press for name, move in phase.moves.items() if move.press}
-        for name, move in presses.items() if not phase.case.condition else ():
-            after = phase.end - max(p.every, TAIL * (phase.end - begin))
-            tail = rows[(rows["step"] > after) & (rows["step"] <= phase.end)]
-            force = -float((tail[[f"{name}_force_{axis}" for axis in "xyz"]] @ np.array(move.direction)).mean())
-            if abs(force / move.force - 1.0) > REACHED:
-                found.append(
-                    f"scene.phase.{phase.name}.move: the force of wall {name} is {force:.4g} N in the last rows, "
-                    f"requested are {move.force:g} N; give a longer duration, or a lower highest_speed if it oscillates"
-                )
-        begin = phase.end
-    return found

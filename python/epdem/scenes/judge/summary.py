@@ -2,25 +2,52 @@
 """Summary of a scene for the terminal, as JSON and in sentences: checks, measures, stages."""
 
 import math
+from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from ..base import readable
-from ..base.readable import in_words
-from ..base.terminal import Shown, cell, frame_table, heads, warned
-from ..case.parts import MEASURES, Histogram, Load, Repose
-from ..impacts.summary import records
-from ..jobs.stage import Tables
-from . import checks, stages
-from .columns import units
+from ...base import readable
+from ...base.readable import in_words
+from ...base.terminal import Shown, cell, frame_table, heads, warned
+from ...case.parts import MEASURES, Histogram, Load, Repose
+from ...case.scene import SceneCase
+from ...impacts.summary import records
+from ...jobs.stage import Tables
+from ..plan.plan import ScenePlan
+from ..tables import stages
+from ..tables.columns import units
+from ..tables.results import SceneResults
+from . import checks
 from .measures import curve, values_of
-from .plan import ScenePlan
-from .run import SceneOutcome
 
 FIRST = ("phase", "asked", "reached", "error", "passed", "relative_density", "springback", "height")  # of stages
 SHARES = ("error", "springback")  # in percent for readers
 CHECKED = {name: name for name in ("check", "value", "expected", "unit", "error", "tolerance")} | {"passed": "pass"}
+
+
+@dataclass
+class SceneOutcome:
+    """Outcome of a scene run."""
+
+    plan: ScenePlan
+    folder: Path
+    results: SceneResults
+    seconds: float
+    reused: bool = False
+    resumed_from: int | None = None
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def case(self) -> SceneCase:
+        return self.plan.case
+
+    @property
+    def passed(self) -> bool:
+        """Whether all checks of the scene hold."""
+        checks = self.results.tables.get("checks")
+        return checks is None or bool(checks["passed"].all())
 
 
 def document(outcome: SceneOutcome) -> dict[str, object]:

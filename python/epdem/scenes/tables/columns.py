@@ -11,16 +11,16 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from ..errors import EngineError
-from ..laws.library import Law
-from ..laws.strengths import LawSpec
-from ..theory.adhesion import plastic_work
-from ..theory.backbones import JKR
-from ..theory.numerics import gauss
-from . import quantities
-from .model import pair_law
-from .plan import ScenePlan
-from .quantities import PARTICLES, ROWS, SPINS, STRAINS
+from ...errors import EngineError
+from ...laws.library import Law
+from ...laws.strengths import LawSpec
+from ...theory.adhesion import plastic_work
+from ...theory.backbones import JKR
+from ...theory.numerics import gauss
+from ..plan import quantities
+from ..plan.model import pair_law
+from ..plan.plan import ScenePlan
+from ..plan.quantities import PARTICLES, ROWS, SPINS, STRAINS
 
 Array = npt.NDArray[np.float64]
 UNITS = quantities.UNITS | {  # of the columns that have one
@@ -131,6 +131,13 @@ def place(p: ScenePlan, wall: str, axis: int, time: Array) -> Array:
             here = move.point_at(so_far[:, None], began)
         before = move
     return here[:, axis]
+
+
+def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
+    """Work [J] that moving walls have done up to each row."""
+    if "wall_power" not in p.row_columns:
+        return np.zeros(len(rows))
+    return np.cumsum(rows["wall_power"].to_numpy() * np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0))
 
 
 GROWTH = ["added_overlap", "screening", "grown_overlap", "body_pressure"]  # that an engine gives with compaction

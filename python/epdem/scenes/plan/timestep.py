@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..case.scene import SceneCase
-from ..errors import CaseError
-from ..impacts.experiment import Experiment, plane, sphere
-from ..impacts.plan import search, stability_limit
-from ..impacts.prediction import Prediction, predict
-from ..theory import timestep as times
+from ...case.scene import SceneCase
+from ...errors import CaseError
+from ...impacts.experiment import Experiment, plane, sphere
+from ...impacts.plan import search, stability_limit
+from ...impacts.prediction import Prediction, predict
+from ...theory import timestep as times
 from .model import model, pair_law
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
@@ -105,7 +105,7 @@ def unstable_steps(case: SceneCase, density: float) -> list[str]:
 def time_step(case: SceneCase, density: float) -> float:
     """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed.
 
-    density: the largest relative density that it is pressed to (`limits.largest_density`).
+    density: the largest relative density that it is pressed to (`beds.largest_density`).
     """
     if case.numerics.time_step is not None:
         return case.numerics.time_step

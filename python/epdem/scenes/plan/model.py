@@ -4,12 +4,12 @@
 import math
 from dataclasses import dataclass
 
-from ..base.declarations import declarations
-from ..case.fields import NODES, Tangential
-from ..case.scene import Rolling, SceneCase
-from ..errors import CaseError
-from ..laws.strengths import LawSpec, own_ratios
-from ..theory.pair import E_star
+from ...base.declarations import declarations
+from ...case.fields import NODES, Tangential
+from ...case.scene import Rolling, SceneCase
+from ...errors import CaseError
+from ...laws.strengths import LawSpec, own_ratios
+from ...theory.pair import E_star
 
 WALL = "wall"
 

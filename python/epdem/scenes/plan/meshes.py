@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..case.motions import FloatArray, Move, RotateMove
-from ..case.parts import Parts
-from ..case.places import Limits
-from ..case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
-from ..errors import CaseError
+from ...case.motions import FloatArray, Move, RotateMove
+from ...case.parts import Parts
+from ...case.places import Limits
+from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
+from ...errors import CaseError
 
 FACETS = 48  # around a circle: the wall is at most 0.2 % of the radius off it
 

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..case.parts import Fill, Parts, Region
-from ..case.places import Vector3
-from ..case.scene import SceneCase
-from ..case.sizes import Particles
-from ..errors import CaseError
+from ...case.parts import Fill, Parts, Region
+from ...case.places import Vector3
+from ...case.scene import SceneCase
+from ...case.sizes import Particles
+from ...errors import CaseError
 
 MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
 LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of its fill

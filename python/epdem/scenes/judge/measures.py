@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.motions import FloatArray
-from ..case.outputs import MassFlow, ReboundSpeed
-from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
-from ..case.walls import Room, Upright
-from ..errors import CaseError
-from .columns import bodies, columns_of_frames, columns_of_rows, last_frame, reduced
-from .model import pair_law
-from .plan import ScenePlan
+from ...case.motions import FloatArray
+from ...case.outputs import MassFlow, ReboundSpeed
+from ...case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
+from ...case.walls import Room, Upright
+from ...errors import CaseError
+from ..plan.model import pair_law
+from ..plan.plan import ScenePlan
+from ..tables.columns import bodies, columns_of_frames, columns_of_rows, last_frame, reduced
 
 LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out

@@ -7,11 +7,11 @@ from itertools import product
 
 import numpy as np
 
-from ..case.motions import FloatArray
-from ..case.parts import Region, Sphere
-from ..case.scene import SceneCase
-from ..case.walls import Upright
-from ..errors import CaseError
+from ...case.motions import FloatArray
+from ...case.parts import Region, Sphere
+from ...case.scene import SceneCase
+from ...case.walls import Upright
+from ...errors import CaseError
 from .filling import Insertion, size_weights
 from .model import Model
 from .plan import ScenePlan

@@ -6,21 +6,26 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.motions import FloatArray
-from ..case.outputs import AtRest
-from ..case.parts import Region
-from ..case.walls import Room
-from ..errors import CaseError
-from ..theory import validity
-from ..theory.timestep import LOOSE
-from . import filling, servo, stages
+from ...base.readable import in_words
+from ...case.motions import FloatArray
+from ...case.outputs import AtRest
+from ...case.parts import Region
+from ...case.walls import Room
+from ...errors import CaseError
+from ...jobs.stage import Tables
+from ...theory import validity
+from ...theory.timestep import LOOSE
+from ..plan import filling
+from ..plan.beds import DENSE, dense_beds, largest_density
+from ..plan.limits import depths, overlaps
+from ..plan.meshes import sheet
+from ..plan.phases import NO_VOID, NOT_REACHED
+from ..plan.plan import ScenePlan
+from ..plan.quantities import STRAINS
+from ..plan.timestep import unstable_steps
+from ..tables.columns import bodies, last_frame, reduced
+from ..tables.stages import SLOW, against, inertial_numbers, loaded, towards, volume
 from .checks import AT_REST, flow_warnings
-from .columns import bodies, last_frame, reduced
-from .limits import dense_beds, depths, largest_density, overlaps
-from .meshes import sheet
-from .plan import NO_VOID, NOT_REACHED, ScenePlan
-from .quantities import STRAINS
-from .timestep import unstable_steps
 
 SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
@@ -28,6 +33,9 @@ ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = tru
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
 PRESSED = "pressures and springback deviate from finite elements (docs/press.md)"
 MISSED = 0.01  # of the duration of a phase
+NEAR = 5e-3  # error of the pressure of a stage from which on a sentence names it
+FAST = 3.0  # rms speed of a bed over the speed of its punch; spheres that the punch hits fly at twice its speed at most
+TAIL, OFF = 0.2, 0.05  # of a phase, over which the force of a wall is averaged; of the force
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 
@@ -36,7 +44,7 @@ def planned_warnings(p: ScenePlan) -> list[str]:
     found = _law(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
     return (
         found
-        + servo.slower(p)
+        + _slower(p)
         + unstable_steps(p.case, largest_density(p.scene, p.beds))
         + _durations(p)
         + _overlaps(p)
@@ -87,10 +95,10 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
         "left (relative density 1), and the tables end there; reduce the force, or the duration of the phase"
         for phase in phases[phases["until"] == NO_VOID].head(1).to_dict("records")
     ]
-    pressing = [*stages.gains_energy(p, tables), *stages.warnings(p, tables)] if "stages" in tables else []
+    pressing = [*_gains_energy(p, tables), *press_warnings(p, tables)] if "stages" in tables else []
     softens = "finite_strain" in p.model.ratios()
     effect = PRESSED if p.model.compaction else validity.SOFTENED if softens else validity.OVERESTIMATED
-    others = [*servo.not_reached(p, tables["rows"]), *flow_warnings(p, tables), *_still_moves(p, tables)]
+    others = [*_force_not_reached(p, tables["rows"]), *flow_warnings(p, tables), *_still_moves(p, tables)]
     return [*validity.finite_strain(largest, where, effect), *no_void, *pressing, *others] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
@@ -258,4 +266,105 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
             f"{said}: a sphere whose centre reaches a wall is free behind it; reduce the load or the time step, "
             "or give a higher modulus"
         )
+    return found
+
+
+def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
+    """A sentence for a stage beside its pressure, for a bed too dense for the laws, for a press that is too fast for an
+    even stress while it loads, for an ejection, and for spheres that have passed the punch."""
+    declared = p.scene.stages
+    assert declared is not None
+    table, found = tables["stages"], []
+    numbers = inertial_numbers(p, loaded(p, table))
+    found += [
+        f"phase {row['phase']}: {in_words(row['reached'], 'Pa')}, {row['error']:+.2%} beside the "
+        f"{in_words(row['asked'], 'Pa')} asked for" + "; press slower near it" * (row["error"] > 0.0)
+        for row in table[table["error"].abs() > NEAR].to_dict("records")
+    ]
+    dense = table[table["relative_density"] > DENSE]
+    if not dense.empty:
+        worst = dense.loc[dense["relative_density"].idxmax()]
+        found.append(
+            f"phase {worst['phase']}: the relative density is {worst['relative_density']:.3g}, and above {DENSE} no "
+            "contact law of spheres gives the pressure (docs/press.md); press less"
+        )
+    if not numbers.empty and numbers.max() > SLOW:
+        name = tables["stages"]["phase"][numbers.idxmax()]
+        speed = next(towards(p, declared, phase) for phase in p.phases if phase.name == name)
+        found.append(
+            f"phase {name}: the inertial number v/h d sqrt(rho/P) is {numbers.max():.2g}, above {SLOW:g}, so that "
+            f"inertia bears a part of the pressure; {speed * SLOW / numbers.max():.2g} m/s is slow enough"
+        )
+    found += [
+        f"phase {phase.name}: its forces are no results: after a release the law leaves all stress on the sides, "
+        "which is 2.1 to 3.2 times that of finite elements at E/Y = 120, 1.3 to 1.7 times at 30, and more below a "
+        "relative density of 0.8 (docs/press.md)"
+        for phase in p.phases
+        if np.any(phase.velocity(declared.against)) and towards(p, declared, phase) == 0.0
+    ]
+    if "particles" in tables and (behind := _behind(p, tables)):
+        found.append(
+            f"{behind} spheres have passed wall {declared.wall}, and pressures and densities are wrong: the force of a "
+            "contact with a hard wall grows up to an overlap of 0.9 radii; give the walls the material of the spheres, "
+            "lower pressures, or smaller spheres"
+        )
+    return found
+
+
+def _gains_energy(p: ScenePlan, tables: Tables) -> list[str]:
+    """A sentence for a bed that gains energy: by its balance, or because it moves faster than a punch can drive it."""
+    declared, checks, rows = p.scene.stages, tables["checks"], tables["rows"]
+    assert declared is not None
+    mass, fast = volume(p, tables) * max(p.case.materials[part.material].density for part in p.scene.filled), False
+    for phase, times in zip(p.phases, p.phase_table.to_dict("records"), strict=True):
+        during = rows[(rows["step"] > times["begin"]) & (rows["step"] <= times["end"])]
+        speed = max(0.0, towards(p, declared, phase))
+        fast |= speed > 0.0 and bool((during["kinetic_energy"] > 0.5 * mass * (FAST * speed) ** 2).any())
+    if not fast and checks[checks["key"].isin(["energy_residual", "energy_gained"])]["passed"].all():
+        return []
+    step = max(phase.time_step for phase in p.phases)
+    return [
+        f"the pressed bed gains energy that no wall puts in: its time step, {step:.2g} s, is too large, and its "
+        f"pressures and densities are wrong; give numerics.time_step = '{0.5 * step:.2g} s'"
+    ]
+
+
+def _behind(p: ScenePlan, tables: Tables) -> int:
+    """Largest number of spheres in a frame at the end of a phase whose centres are behind the punch."""
+    stages, spheres = tables["stages"], tables["particles"]
+    declared = p.scene.stages
+    assert declared is not None
+    axis, at = against(p, declared, p.time_at(stages["step"].to_numpy()))
+    height, begin = (spheres["step"].map(pd.Series(x, stages["step"])) for x in (stages["height"].to_numpy(), at))
+    counts = (np.abs(spheres["xyz"[axis]] - begin) > height).groupby(spheres["step"]).sum()
+    return int(counts.max())
+
+
+def _slower(p: ScenePlan) -> list[str]:
+    """A sentence for each wall that a force drives and that is slower in contact than the case says."""
+    return [
+        f"scene.phase.{phase.name}.move: with the dashpots of [viscous] wall {name} would oscillate at highest_speed = "
+        f"{press.highest_speed:g} m/s; where spheres touch it, it has at most {press.speed_in_contact:g} m/s"
+        for phase in p.phases
+        for name, move in phase.moves.items()
+        if (press := move.press) and press.speed_in_contact < press.highest_speed
+    ]
+
+
+def _force_not_reached(p: ScenePlan, rows: pd.DataFrame) -> list[str]:
+    """A sentence for each wall that a force drives whose force is not the requested one at the end of a phase, which no
+    condition ends."""
+    found, begin = [], 0
+    for phase in p.phases:
+        presses = {name: move.press for name, move in phase.moves.items() if move.press}
+        for name, move in presses.items() if not phase.case.condition else ():
+            after = phase.end - max(p.every, TAIL * (phase.end - begin))
+            tail = rows[(rows["step"] > after) & (rows["step"] <= phase.end)]
+            force = -float((tail[[f"{name}_force_{axis}" for axis in "xyz"]] @ np.array(move.direction)).mean())
+            if abs(force / move.force - 1.0) > OFF:
+                found.append(
+                    f"scene.phase.{phase.name}.move: the force of wall {name} is {force:.4g} N in the last rows, "
+                    f"requested are {move.force:g} N; give a longer duration, or a lower highest_speed if it oscillates"
+                )
+        begin = phase.end
     return found

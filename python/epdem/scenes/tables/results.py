@@ -15,15 +15,15 @@ import h5py
 import numpy as np
 import pandas as pd
 
-from ..base import tables as h5
-from ..base.tables import write_array, write_attributes
-from ..case.motions import FloatArray
-from ..jobs.stage import Tables
-from . import meshes
+from ...base import tables as h5
+from ...base.tables import write_array, write_attributes
+from ...case.motions import FloatArray
+from ...jobs.stage import Tables
+from ..plan import meshes
+from ..plan.meshes import at_end
+from ..plan.plan import ScenePlan
+from ..plan.quantities import SPINS
 from .columns import FORCE, NORMAL, bodies, columns_of_rows, units
-from .meshes import at_end
-from .plan import ScenePlan
-from .quantities import SPINS
 
 ENGINE_TABLES = ("rows", "particles", "contacts", "walls", "phases")
 FILES = "files"  # group of the files that the case names

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Phases of a scene in steps, and how their walls slow and rest at a condition. SI."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...case.motions import Move
+from ...case.places import Vector3
+from ...case.walls import CasePhase
+
+REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
+NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
+MISS = 2e-3  # of a limit, by which a force that comes near it may fall short of it
+# of a limit: a wall whose force comes so near slows in proportion to what is left; beyond the limit it goes back, ten
+# times slower, so that it does not swing where a step alone changes the force by as much
+SLOWING = 0.1
+LAG = 20  # steps within which the share of its speed follows, so that dashpots do not make it swing
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A phase of the case. end: its last step, or an earlier one if its condition is met. time_step [s]: the given one,
+    or one with which the duration is a whole number of rows.
+
+    held: the step at which `until` held, from which on its walls rest; None: before a run, or without. value, opposite:
+    what was awaited at that step, and of a press the force [N] on the wall against the punch; force: on the punch,
+    where a height or density was awaited. slowed: of a phase whose walls a condition stops, steps of rows, and how long
+    [s] its walls would have moved at full speed to come as far; before a run empty.
+    gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
+    or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
+    """
+
+    case: CasePhase
+    end: int
+    time_step: float
+    gates: tuple[str, ...] = ()
+    reached: str = ""
+    held: int | None = None
+    value: float = math.nan
+    opposite: float = math.nan
+    force: float = math.nan
+    slowed: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+
+    @property
+    def slows(self) -> int | None:
+        """Axis of the largest velocity of the wall whose force ends the phase: all its walls slow as the force comes
+        near, see SLOWING; None: no such wall moves, or not all motions are linear."""
+        return None if self.case.condition and self.case.condition.of_bed else self.measured
+
+    @property
+    def measured(self) -> int | None:
+        """The same of a wall whose force, height or density ends the phase: its way is known in the run alone."""
+        condition = self.case.condition
+        velocity = np.abs(self.velocity(condition.wall or "")) if condition and self.stops else np.zeros(3)
+        return int(velocity.argmax()) if velocity.any() else None
+
+    @property
+    def stops(self) -> bool:
+        """Whether the walls rest from the step on at which a force, height or density is reached; the phase ends with
+        the row."""
+        condition = self.case.condition
+        of_wall = condition is not None and condition.wall is not None
+        return of_wall and all(move.constant_velocity for move in self.moves.values())
+
+    @property
+    def name(self) -> str:
+        return self.case.name
+
+    @property
+    def moves(self) -> dict[str, Move]:
+        return self.case.moves
+
+    def velocity(self, wall: str) -> Vector3:
+        """The constant velocity of a wall [m/s]."""
+        move = self.moves.get(wall)
+        x, y, z = (move and move.constant_velocity) or (0.0, 0.0, 0.0)
+        return x, y, z
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhaseSteps(Phase):
+    """A phase between its neighbours. upto: whether its last step is known before the run. end_frames: kinds of frames
+    that are due at its end beside those every N steps.
+    """
+
+    before: Phase | None
+    after: Phase | None
+    upto: bool
+    end_frames: tuple[str, ...]
+
+    @property
+    def record(self) -> bool:
+        """Whether the phase has frames."""
+        return self.case.record
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether frames follow in the next phase."""
+        return self.after is not None and self.after.case.record
+
+    @property
+    def steps(self) -> int:
+        return self.end - (self.before.end if self.before else 0)
+
+    @property
+    def own_time_step(self) -> float | None:
+        """The time step [s]; None: the time step of the phase before."""
+        return self.time_step if self.before and self.before.time_step != self.time_step else None
+
+    @property
+    def added(self) -> list[str]:
+        """Walls that come with the phase."""
+        return [name for name in self.gates if self.before is None or name not in self.before.gates]
+
+    @property
+    def removed(self) -> list[str]:
+        """Walls that go at its end."""
+        return [name for name in self.gates if self.after and name not in self.after.gates]
