@@ -57,6 +57,7 @@ class YieldStress(Quantity):
 
 
 NEVER = "inf Pa"
+Temperature = Annotated[float, Quantity("K", above=0.0)]
 Length = Annotated[float, Quantity("m", above=0.0)]
 Speed = Annotated[float, Quantity("m/s", above=0.0)]
 Pressure = Annotated[float, Quantity("Pa", above=0.0)]

@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict
 
@@ -11,7 +11,7 @@ from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, check_ratios, find_law
 from ..theory.cavity import FINITE_STRAIN
-from .fields import Material, Name
+from .fields import Material, Name, Quantity
 from .messages import nearest, shorten, shown_key
 from .units import read_number
 
@@ -35,9 +35,11 @@ class LawChoice(BaseModel):
 
 
 class LawMaterial(Material):
-    """A material that can have the strength of the law as a key (yield_pressure = "3 GPa")."""
+    """A material that can have the strength of the law as a key (yield_pressure = "3 GPa"), and of scenes with heat."""
 
     model_config = ConfigDict(frozen=True, extra="allow", strict=True)
+    thermal_conductivity: Annotated[float, Quantity("W/(m K)", above=0.0)] | None = None
+    specific_heat: Annotated[float, Quantity("J/(kg K)", above=0.0)] | None = None
 
     def own_strength(self, name: str, law: str) -> float | None:
         """The strength [Pa] that the material `name` has as the key of this law. Raises CaseError for other keys."""

@@ -9,12 +9,13 @@ from pydantic import Field, model_validator
 from .fields import Frozen, Length, Line, Name, Pressure, Quantity, Speed
 from .places import Axis, PartName, Place, Side
 
-UNITS = {"force": "N", "torque": "N m", "position": "m"}
+UNITS = {"force": "N", "torque": "N m", "position": "m", "heat_flow": "W"}
 
 
 class Row(Frozen):
-    """A column of the rows: a component of the force or torque of the spheres on a wall, mean over a row, or the place
-    of a wall with constant velocities in the middle of the row. area: the force is divided by it.
+    """A column of the rows: a component of the force or torque of the spheres on a wall, mean over a row, the place
+    of a wall with constant velocities in the middle of the row, or the heat flow into a wall with a temperature, mean
+    over a row. area: the force is divided by it.
     """
 
     name: PartName
@@ -22,20 +23,21 @@ class Row(Frozen):
     force: Side | None = None
     torque: Side | None = None
     position: Axis | None = None
+    heat_flow: Literal[True] | None = None
     area: Annotated[float, Quantity("m^2", above=0.0)] | None = None
     title: Line
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        if sum(x is not None for x in (self.force, self.torque, self.position)) != 1:
-            raise ValueError("give one of force, torque and position")
+        if sum(x is not None for x in (self.force, self.torque, self.position, self.heat_flow)) != 1:
+            raise ValueError("give one of force, torque, position and heat_flow")
         if self.area is not None and self.force is None:
             raise ValueError("'area' belongs to force, and only to it")
         return self
 
     @property
     def quantity(self) -> str:
-        return "force" if self.force else "torque" if self.torque else "position"
+        return next(name for name in UNITS if getattr(self, name))
 
     @property
     def unit(self) -> str:

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Field, Tag, model_validator
 
 from ..base.tables import Column
-from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, by_key, zero_vector
+from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, Temperature, by_key, zero_vector
 from .motions import Rate, Speeds
 from .outputs import Check, Row, Stages
 from .places import Axis, Pair, PartName, Place, Side, Vector
@@ -127,6 +127,7 @@ class Sphere(NamedTuple):
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     spin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     frozen: bool = False
+    temperature: float | None = None  # [K]
 
 
 class Fill(Frozen):
@@ -144,6 +145,7 @@ class Fill(Frozen):
     rate: Rate | None = None
     velocity: Speeds = Field(default_factory=zero_vector)
     phase: PartName | None = None
+    temperature: Temperature | None = None
     exact: bool = True  # false: spheres that are in the region before count, too
 
     @model_validator(mode="after")
@@ -160,6 +162,7 @@ class FileFill(Frozen):
     name: PartName
     file: FileName
     material: Name | None = None
+    temperature: Temperature | None = None
 
     @cached_property
     def spheres(self) -> list[Sphere]:
@@ -185,7 +188,8 @@ class FileFill(Frozen):
         if not 1e-12 < radius < 1e6:
             raise ValueError(f"{place}: radius = {radius:g} m, must be above 0")
         vx, vy, vz = (number_in(place, key, cells.get(key, "0")) for key in ("vx", "vy", "vz"))
-        return Sphere((x, y, z), radius, cells.get("material", self.material or ""), (vx, vy, vz))
+        material = cells.get("material", self.material or "")
+        return Sphere((x, y, z), radius, material, (vx, vy, vz), temperature=self.temperature)
 
     @model_validator(mode="after")
     def _readable(self) -> Self:
@@ -207,6 +211,7 @@ class SingleSphere(Frozen):
     spin: Annotated[list[Spin], Field(min_length=3, max_length=3)] = Field(default_factory=zero_vector)
     frozen: bool = False
     phase: PartName | None = None
+    temperature: Temperature | None = None
 
     @model_validator(mode="after")
     def _at_rest(self) -> Self:
@@ -220,7 +225,7 @@ class SingleSphere(Frozen):
     def sphere(self) -> Sphere:
         """The body as a row of a table."""
         (x, y, z), (vx, vy, vz), (wx, wy, wz) = self.position, self.velocity, self.spin
-        return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen)
+        return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen, self.temperature)
 
 
 class Parts(Frozen):

@@ -72,6 +72,7 @@ class Contact(Frozen):
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: Annotated[float, Quantity("J/m^3", above=0.0)] | None = None  # energy density (sjkr)
+    heat_share: Share = 0.9  # of the plastic and frictional work, which becomes heat in a scene with temperatures
 
 
 class Output(Frozen):

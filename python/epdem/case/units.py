@@ -12,7 +12,8 @@ from ..errors import CaseError
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _NAME = r"[A-Za-zµ°%]{1,20}"
 _FACTOR = rf"{_NAME}(?:(?:\^|\*\*)-?\d)?"
-_QUANTITY = re.compile(rf"({_NUMBER})(?: +((?:1/)?{_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d)*))?")
+_FACTORS = rf"{_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d|/\({_FACTOR}(?:[ *·]{_FACTOR})+\))*"
+_QUANTITY = re.compile(rf"({_NUMBER})(?: +((?:1/)?{_FACTORS}))?")
 _ANGLES = ("radian", "degree", "turn", "grade", "revolutions_per_minute", "revolutions_per_second")  # pint's names
 
 
@@ -47,6 +48,8 @@ def _by_pint(unit: str, si: str) -> float:
         raise ValueError(f"unknown unit {unit!r}") from error
     except pint.DimensionalityError as error:
         raise ValueError(f"the unit {unit!r} has the wrong dimension; expected a unit like {si!r}") from error
+    if any(name.startswith("degree_") for name, _ in quantity.unit_items()):
+        raise ValueError(f"the unit {unit!r} has a zero of its own; write kelvins, K (20 degC are 293.15 K)")
     turns = any(name.endswith(_ANGLES) for name, _ in quantity.unit_items())  # pint takes a radian for the number 1
     if si == "rad/s" and not turns:
         raise ValueError(f"the unit {unit!r} does not say whether it counts turns; write turn/s, rpm or rad/s")

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .fields import Frozen, Interval, Length, Name, Quantity, Spin, zero_vector
+from .fields import Frozen, Interval, Length, Name, Quantity, Spin, Temperature, zero_vector
 from .motions import Force, Move
 from .places import Axis, Direction, Limits, Pair, PartName, Place, Side, Span, Vector
 from .sizes import FileName
@@ -55,8 +55,11 @@ class Upright(Frozen):
 
 
 class _Wall(Frozen):
+    """temperature: fixed; a wall without one takes no heat."""
+
     name: PartName
     material: Name
+    temperature: Temperature | None = None
 
 
 class PlaneWall(_Wall):

@@ -21,6 +21,7 @@ _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d
 # thermo words of the deck and their columns; for the loads of walls see `_column`
 ROWS = {x.words["thermo"]: name for name, x in quantities.ROWS.items() if "thermo" in x.words}
 _LOAD, _WAY = re.compile(r"load(\d+)\[(\d)\]"), re.compile(r"(?:v_)?way(\d+)")
+_HEAT = re.compile(r"heat_flow(\d+)")
 _TOTAL = re.compile(r" - a total of (\d+) particle templates ")
 
 
@@ -53,6 +54,8 @@ def _column(p: ScenePlan, word: str) -> str | None:
     word = word.removeprefix("f_")
     if load := _LOAD.fullmatch(word):
         return f"{p.measured_walls[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
+    if flow := _HEAT.fullmatch(word):
+        return f"{p.heat_flows[int(flow[1])]}_heat_flow"
     loads = {f"{wall}_{load}" for wall in p.measured_walls for load in columns.LOADS}
     return ROWS.get(word, word if word in {*ROWS.values(), *loads, *p.way_columns} else None)
 

@@ -4,7 +4,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from itertools import combinations
+from itertools import combinations, groupby
 
 import numpy as np
 
@@ -56,6 +56,7 @@ def check(p: ScenePlan) -> None:
 @dataclass(frozen=True)
 class PhaseCommands:
     """A phase. data: file of the spheres that come with it; None: none do. placed: spheres that were placed before.
+    temperatures: first and last id of spheres and their temperature.
 
     steps: that are left. time_step [s]: None: that of the phase before. places: formulas of the spheres that lie in the
     places of single ones. driven: walls that a force has driven, words of their ways. fills: key, id, and limits of the
@@ -68,6 +69,7 @@ class PhaseCommands:
     time_step: float | None
     data: str | None
     placed: int
+    temperatures: tuple[str, ...]
     places: tuple[tuple[str, str], ...]
     driven: tuple[tuple[str, list[str]], ...]
     fills: tuple[tuple[str, str, str], ...]
@@ -107,6 +109,7 @@ class SceneDeck:
     contact_walls: tuple[str, ...]
     row_words: tuple[str, ...]
     columns: tuple[str, ...]
+    heat: str
     restart: Restart | None = None
 
 
@@ -119,6 +122,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             time_step=run.own_time_step,
             data=_data_file(p, run.name),
             placed=p.count_before(run.name),
+            temperatures=tuple(_temperatures(p, run.name)),
             places=taken_places(p, run.name, "radius"),
             driven=tuple((name, way(p, name)) for name in p.driven_before(run.name)),
             fills=tuple(_fills(p, run.name)),
@@ -143,7 +147,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     return SceneDeck(
         plan=p,
         skin=p.case.numerics.skin or default_skin(p),
-        settings=" energies" * (p.output.energy or p.contacts > 0) + " strain",
+        settings=" energies" * (p.output.energy or p.contacts > 0 or p.heat is not None) + " strain",
         materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
         pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),
@@ -152,9 +156,36 @@ def deck(p: ScenePlan) -> SceneDeck:
         frozen=tuple(n for n, s in enumerate(p.scene.table, 1) if s.frozen),
         phases=tuple(_phases(p)),
         contact_walls=tuple(decks.wall_id(w) for w in contact_walls(p)),
-        row_words=("f_ratio[1]", "f_ratio[2]", *row_words(p)),
+        row_words=(
+            "f_ratio[1]",
+            "f_ratio[2]",
+            *row_words(p),
+            *(f"f_heat_flow{n}" for n in p.heat_flows),
+        ),
         columns=quantities.words("lammps", columns_of_frames(p)),
+        heat=_heat(p),
     )
+
+
+def _heat(p: ScenePlan) -> str:
+    """The words of fix heat/ep; "": the scene has no heat."""
+    if p.heat is None:
+        return ""
+    types = zip(p.heat.conductivities, p.heat.capacities, strict=True)
+    conductivity = {name: p.heat.conductivities[kind - 1] for name, kind in p.wall_types.items()}
+    words = [decks.number(x) for x in (p.heat.share, *(x for one in types for x in one))]
+    walls = (
+        f"wall {decks.wall_id(w)} {decks.number(T)} {decks.number(conductivity[w])}" for w, T in p.heat.walls.items()
+    )
+    return " ".join([*words, *walls])
+
+
+def _temperatures(p: ScenePlan, phase: str) -> Iterator[str]:
+    """First and last id of the spheres that come with a phase, and their temperature."""
+    last = p.count_before(phase)
+    for T, some in groupby(placement.temperatures(p, phase), key=lambda x: x[1]):
+        first, last = last + 1, last + sum(count for count, _ in some)
+        yield f"{first} {last} {decks.number(T)}"
 
 
 def _is_special(m: Model, i: int, j: int) -> bool:

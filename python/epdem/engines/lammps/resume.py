@@ -28,7 +28,10 @@ def _continued(p: ScenePlan, out: Path, step: int) -> SceneDeck:
     if inside:
         part, gone = phases[0], step - begin
         rest = replace(part, steps=part.steps - gone, stop=later(part.stop, out, step, gone, p.every))
-        phases = (replace(rest, time_step=None, data=None, fills=(), gates=(), commands=()), *phases[1:])
+        phases = (
+            replace(rest, time_step=None, data=None, temperatures=(), fills=(), gates=(), commands=()),
+            *phases[1:],
+        )
     last = number if inside else number - 1  # the phase whose motions and planes the restart file meets
     return replace(
         d,

@@ -18,7 +18,7 @@ from ...scenes.plan.model import Model
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.plan.quantities import PARTICLES, SPINS
 from ...scenes.tables.columns import GROWTH
-from ..host import refuse_narrow
+from ..host import refuse, refuse_narrow
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
@@ -191,6 +191,7 @@ class SceneDeck:
 def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
+    refuse("temperature", p.heat is not None, "the plugin of LIGGGHTS conducts no heat")
     skin = p.case.numerics.skin or default_skin(p)
     refuse_narrow(p, 2.0 * (2.0 * p.largest + skin), "LIGGGHTS has one history for a pair of spheres, also for images")
     _refuse_meshes(p)

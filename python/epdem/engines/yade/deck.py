@@ -86,6 +86,7 @@ def check(p: ScenePlan) -> None:
     rolling = p.model.rolling and p.model.rolling.model
     unknown: dict[str, tuple[object, str]] = {
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
+        "temperature": (p.heat is not None, "the module of YADE conducts no heat"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
     }

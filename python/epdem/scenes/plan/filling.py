@@ -36,6 +36,7 @@ class Insertion:
     rate: float | None = None
     period: float = 0.0
     exact: bool = False
+    temperature: float | None = None  # [K]
 
 
 def size_weights(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
@@ -129,7 +130,7 @@ def _insertion(scene: Parts, f: Fill, key: str, count: int) -> Insertion:
     vx, vy, vz = f.velocity
     phase = next(p for p in scene.phase if f.phase in (None, p.name))
     if f.rate is None:
-        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz))
+        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), temperature=f.temperature)
     down, depth = -vz, f.region.z[1] - f.region.z[0]
     if not (down > 0 or scene.gravity):
         raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")

@@ -21,6 +21,7 @@ from ...jobs.stage import Tables
 from . import meshes, servo
 from .beds import PressedBed, largest_density, pressed_beds, refuse_below_solid, refuse_heights
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
+from .heat import Heat, heat
 from .limits import (
     refuse_bodies_in_walls,
     refuse_combinations,
@@ -64,6 +65,7 @@ class ScenePlan:
     contacts: int
     pictures: int
     restarts: int
+    heat: Heat | None = None
 
     @property
     def scene(self) -> Parts:
@@ -271,8 +273,15 @@ class ScenePlan:
     @property
     def measured_walls(self) -> tuple[str, ...]:
         """The walls whose forces an engine writes: those of `loads` and of the rows that the scene names."""
-        named = {row.wall for row in self.scene.row if not row.position}
+        named = {row.wall for row in self.scene.row if row.force or row.torque}
         return tuple(w.name for w in self.scene.wall if w.name in {*self.loads, *named})
+
+    @property
+    def heat_flows(self) -> dict[int, str]:
+        """The walls into which the rows have a heat flow, by their numbers among the walls with a temperature."""
+        walls = enumerate(self.heat.walls if self.heat else (), 1)
+        named = {row.wall for row in self.scene.row if row.heat_flow}
+        return {n: name for n, name in walls if name in named}
 
     @property
     def stress_walls(self) -> tuple[str, ...]:
@@ -424,6 +433,7 @@ def plan(case: SceneCase) -> ScenePlan:
         contacts=contacts,
         pictures=interval(out.pictures),
         restarts=interval(out.restarts, whole),
+        heat=heat(case, contact_model),
     )
 
 

@@ -51,6 +51,7 @@ PARTICLES = {
     **{f"v{axis}": Quantity("m/s", f"velocity along {axis}") for axis in "xyz"},
 }
 SPINS = {f"omega_{x}": Quantity("rad/s", f"angular velocity about {x}", _both(f"omega{x}")) for x in "xyz"}
+TEMPERATURE = {"temperature": Quantity("K", "temperature", {"lammps": "f_heat"})}
 WORKS = {
     "plastic_work": Work(
         "plastic work so far",
@@ -77,7 +78,7 @@ WORKS = {
         {"liggghts": "f_frictionEnergy", "lammps": "f_EP_HISTORY0[5]"},  # YADE's recorder adds it to frictionWork
     ),
 }
-OF_FRAMES: dict[str, Quantity | Work] = {**PARTICLES, **SPINS, **WORKS}
+OF_FRAMES: dict[str, Quantity | Work] = {**PARTICLES, **SPINS, **TEMPERATURE, **WORKS}
 UNITS = {name: x.unit for name, x in {**ROWS, **OF_FRAMES}.items() if x.unit}
 
 

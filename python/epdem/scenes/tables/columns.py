@@ -20,7 +20,7 @@ from ...theory.numerics import gauss
 from ..plan import quantities
 from ..plan.model import pair_law
 from ..plan.plan import ScenePlan
-from ..plan.quantities import PARTICLES, ROWS, SPINS, STRAINS
+from ..plan.quantities import PARTICLES, ROWS, SPINS, STRAINS, TEMPERATURE
 
 Array = npt.NDArray[np.float64]
 UNITS = quantities.UNITS | {  # of the columns that have one
@@ -71,7 +71,7 @@ def columns_of_rows(p: ScenePlan) -> set[str]:
 
 def columns_of_frames(p: ScenePlan) -> list[str]:
     """The names of the columns that the frames of a scene have beside the step."""
-    return [*PARTICLES, *(SPINS if p.model.spins else ()), *p.works]
+    return [*PARTICLES, *(SPINS if p.model.spins else ()), *(TEMPERATURE if p.heat else ()), *p.works]
 
 
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
@@ -111,6 +111,8 @@ def named_rows(p: ScenePlan, table: pd.DataFrame) -> pd.DataFrame:
     for row in p.scene.row:
         if row.position:
             table[row.name] = place(p, row.wall, row.axis, middle)
+        elif row.heat_flow:
+            table[row.name] = table[f"{row.wall}_heat_flow"]
         else:
             table[row.name] = row.sign * table[f"{row.wall}_{row.quantity}_{'xyz'[row.axis]}"] / (row.area or 1.0)
     table = table[[name for name in table if name in columns_of_rows(p)]]
