@@ -117,4 +117,12 @@ def unloading():
             yield row["lattice"], *numbers, ways
 
 
+def stands():
+    """Rows of the finite elements that stand before a release along z: (lattice, E/Y, D, axial, lateral stress)."""
+    with (TABLES / "lateral.csv").open() as file:
+        for row in csv.DictReader(file):
+            if row["nu"] != "0.45":
+                yield row["lattice"], *(float(row[k]) for k in ("E_over_Y", "density", "axial", "lateral"))
+
+
 RELEASES = [row for row in unloading() if row[0] != "die"]

@@ -17,6 +17,7 @@ from dense_lattices import (
     finite_elements,
     pressed,
     smooth,
+    stands,
     table,
 )
 from epdem.theory import pair
@@ -49,6 +50,20 @@ def test_side_stress_of_a_die(name, by_law, by_elements, curves):
     assert np.interp(-at, -d, lateral / axial) == pytest.approx(by_law, abs=0.01)
     assert sxx / szz == pytest.approx(by_elements, abs=0.01)
     assert not pressed([name], grows=False)[name][2].any()
+
+
+@pytest.mark.parametrize(
+    ("name", "E", "density", "expected"),
+    [("die", 120, (0.65, 0.80, 0.90, 0.95), (1.16, 0.93, 0.84, 0.72)), ("die_soft", 30, (0.80, 0.90), (0.75, 0.74))],
+)
+def test_side_force_of_a_die_over_that_of_elements_that_stand(name, E, density, expected, curves):
+    """Those of docs/press.md; while the elements stand they lose less than a tenth of their moving stresses."""
+    rows = [row for row in stands() if row[:2] == ("die", E) and row[2] in density]
+    axial, lateral = np.array([row[3:] for row in rows]).T
+    at, szz, sxx = finite_elements(name, np.array(density))
+    assert np.abs([axial / szz - 0.95, lateral / sxx - 0.95]).max() < 0.05
+    d, _, by_law = curves[name]
+    assert np.interp(-at, -d, by_law) / lateral == pytest.approx(expected, abs=0.015)
 
 
 @pytest.fixture(scope="module")
