@@ -49,6 +49,7 @@ class Simulation : public LAMMPS_NS::Compute {
   bool is_new(const std::string& text) { return said_.insert(text).second; }
 
   std::shared_ptr<loop::LoopState> loops;
+  std::set<std::string> stored_walls;  // fixes of a restart file that hold contacts no wall has claimed
 
  private:
   static constexpr const char* name = "epdem_simulation";

@@ -2,9 +2,11 @@
 """Mesh walls of our models: our loops, which skip what cannot touch and compute contacts as lanes, and LIGGGHTS's own
 do not differ in one bit."""
 
+import re
+
 import numpy as np
 import pytest
-from plugin_decks import Bodies, contact, good, head, materials, per_pair
+from plugin_decks import Bodies, contact, good, head, materials, per_pair, run
 
 from epdem.scenes.plan.meshes import stl_text
 from marks import thorough
@@ -135,3 +137,28 @@ def test_a_restart_goes_on_with_the_other_loop_over_triangles(tmp_path):
             text = deck("thornton", "history", "at rest", steps=1000, restart=folder / "x.restart")
             ends.append(outcome(tmp_path / f"{first}-{second}", text, loop=second)[0][-1])
     assert len(ends) == 4 and all(np.array_equal(ends[0], e) for e in ends[1:])
+
+
+LATER = {
+    "same ids": ([], False, ""),
+    "another wall": ([("fix floor", "fix ground")], False, "id ground: the restart file holds contacts of walls"),
+    "another mesh": ([("plate all", "sheet all"), ("meshes plate", "meshes sheet")], False, "with the ids plate, and"),
+    "a run before": ([], True, "id floor: its contacts of the restart file ended with the first run"),
+    "a new wall after a run": ([("fix floor", "fix ground")], True, ""),
+}
+
+
+@pytest.mark.parametrize("what", LATER)
+def test_a_wall_that_would_lose_its_dents_after_a_restart_is_refused(what, tmp_path):
+    """The mesh and the floor are each a wall; `run 0` before the floor: it comes after the first run."""
+    changes, late, wrong = LATER[what]
+    first = deck("thornton", "history", "at rest", steps=20, end="write_restart x.restart\n")
+    again = deck("thornton", "history", "at rest", steps=20, restart="x.restart").replace("out.bin", "again.bin")
+    if late:
+        again = re.sub("compute w .*\n|dump w .*\n", "", again)  # LIGGGHTS refuses them after a run
+        again = again.replace("fix floor", "timestep 2e-7\nrun 0\nfix floor")
+    for old, new in changes:
+        assert again.count(old) == 1
+        again = again.replace(old, new)
+    done = run(tmp_path, first + "clear\n" + again, files={"box.data": bodies().data(ROOM), "plate.stl": box()})
+    assert (done.code != 0) == bool(wrong) and wrong in done.error, done.error or done.text[-1000:]

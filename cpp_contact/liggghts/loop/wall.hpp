@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planned.hpp"
+#include "stored_walls.hpp"
 
 #ifdef EPDEM_BUILT_FOR
 
@@ -81,10 +82,15 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
 
  public:
   Wall(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::FixWallGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), Planned(lmp, model_of(static_cast<Base&>(*this)), hash, true), loop_(lmp) {}
+      : Base(lmp, parent, hash),
+        Planned(lmp, model_of(static_cast<Base&>(*this)), hash, true),
+        stored_(lmp),
+        parent_(*parent),
+        loop_(lmp) {}
 
   void init_granular() override {
     Base::init_granular();
+    stored_.claim(parent_);
     if (!missing()) prepare();
   }
 
@@ -120,6 +126,8 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
   static bool velocity_in_middle(const SurfacesIntersectData& s, const double* at_surface, LAMMPS_NS::TriMesh& mesh,
                                  int triangle, double* v);
 
+  StoredContacts stored_;
+  const LAMMPS_NS::FixWallGran& parent_;
   WallLoop loop_;
 };
 
