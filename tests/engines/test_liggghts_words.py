@@ -14,6 +14,7 @@ from test_stopping import alive, until
 
 from epdem.base.processes import call
 from epdem.engines import log
+from epdem.engines.frames import text_frame
 from epdem.engines.liggghts import dump
 from epdem.errors import EngineError
 from epdem.scenes.plan.meshes import stl_text
@@ -49,15 +50,15 @@ LOCAL = (
 )
 
 
-def test_a_local_dump_knows_how_many_rows_it_has(tmp_path):
+def test_a_text_dump_knows_how_many_rows_it_has(tmp_path):
     path = tmp_path / "a.txt"
     path.write_text(LOCAL.format(n=2) + "1 2.5\n3 4e-9\n")
-    assert dump.local(path).tolist() == [[1.0, 2.5], [3.0, 4e-9]]
+    assert text_frame(path, ["a", "b"]).to_numpy().tolist() == [[1.0, 2.5], [3.0, 4e-9]]
     path.write_text(LOCAL.format(n=0))
-    assert dump.local(path).size == 0
+    assert text_frame(path, ["a", "b"]).shape == (0, 2)
     path.write_text(LOCAL.format(n=2) + "1 2.5\n")
-    with pytest.raises(EngineError, match="1 rows of 2"):
-        dump.local(path)
+    with pytest.raises(ValueError, match="1 lines of 2"):
+        text_frame(path, ["a", "b"])
 
 
 def test_thermo_rows_of_several_runs_are_read_in_order(tmp_path):

@@ -70,3 +70,13 @@ def _read(path: Path, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
     except Exception as error:  # of a damaged head numpy says almost anything
         reason = " ".join(str(error).split()) or type(error).__name__
         raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
+
+
+def text_frame(path: Path, names: list[str]) -> pd.DataFrame:
+    """The table of a text dump of LIGGGHTS or LAMMPS. Raises OSError, ValueError if it is not whole; its head tells the
+    number of its lines."""
+    head, lines = (text := path.read_text(encoding="utf-8").split("\n"))[:9], text[9:]
+    values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
+    if len(head) < 9 or not len(values) == len(lines) - 1 == int(head[3]):
+        raise ValueError(f"{len(lines) - 1} lines of {head[3] if len(head) > 3 else 'a file without a head'}")
+    return pd.DataFrame(values, columns=names)

@@ -15,7 +15,7 @@ from ...impacts.plan import Plan
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.tables import columns
 from .. import log
-from ..frames import Frames, Kinds
+from ..frames import Frames, Kinds, text_frame
 from ..input_script import torque_origin
 from .deck import END, PATH, contact_walls
 from .launcher import OUT
@@ -46,15 +46,6 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     return found
 
 
-def _frame(path: Path, names: list[str]) -> pd.DataFrame:
-    """The table of a dump. Raises OSError, ValueError if it is not whole; its head tells the number of its lines."""
-    head, lines = (text := path.read_text(encoding="utf-8").split("\n"))[:9], text[9:]
-    values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
-    if len(head) < 9 or not len(values) == len(lines) - 1 == int(head[3]):
-        raise ValueError(f"{len(lines) - 1} lines of {head[3] if len(head) > 3 else 'a file without a head'}")
-    return pd.DataFrame(values, columns=names)
-
-
 def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres, contacts between them, and with each wall."""
     values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
@@ -65,7 +56,7 @@ def kinds(p: ScenePlan) -> Kinds:
         found |= {f"contacts_{wall_id(name)}": (steps, of_wall) for name in contact_walls(p)}
         gates = {w.name: p.frame_steps_with(w.name, p.contacts) for w in p.scene.gates}
         found |= {f"contacts_{wall_id(name)}": (own, of_wall) for name, own in gates.items() if own}
-    return {k: (f"{k}.{{}}.txt", steps, partial(_frame, names=names)) for k, (steps, names) in found.items()}
+    return {k: (f"{k}.{{}}.txt", steps, partial(text_frame, names=names)) for k, (steps, names) in found.items()}
 
 
 def particles(frames: Frames) -> pd.DataFrame:

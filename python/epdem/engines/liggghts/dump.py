@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LIGGGHTS's dump files: binary `dump custom` and text `dump local`."""
+"""LIGGGHTS's binary dump files."""
 
-import io
 import struct
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from ...errors import EngineError
 
@@ -48,20 +46,3 @@ def series(path: Path) -> np.ndarray:
     Raises EngineError if the file is incomplete, ValueError if the number of atoms changes.
     """
     return np.stack([rows[:, 1:] for _, rows in frames(path)])
-
-
-def local(path: Path) -> np.ndarray:
-    """The rows of a `dump local` text file of one frame, shape (n, columns); (0, 0) if there are none.
-
-    Raises EngineError if the file is incomplete.
-    """
-    try:
-        text = path.read_text(encoding="utf-8")
-        count = int(text.split("ITEM: NUMBER OF ENTRIES\n", 1)[1].split("\n", 1)[0])
-        body = text.split("ITEM: ENTRIES", 1)[1].split("\n", 1)[1]
-        table = pd.read_csv(io.StringIO(body), sep=r"\s+", header=None, dtype=float) if body.strip() else pd.DataFrame()
-        if len(table) != count or not text.endswith("\n"):
-            raise ValueError(f"{len(table)} rows of {count}")
-    except (OSError, ValueError, IndexError) as error:
-        raise EngineError(f"{path}: incomplete ({error}); the run was stopped while it wrote this frame") from None
-    return np.asarray(table, float)

@@ -18,7 +18,7 @@ from ...scenes.plan import quantities
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.tables import columns
 from .. import log
-from ..frames import Frames, Kinds
+from ..frames import Frames, Kinds, text_frame
 from . import dump
 from .deck import PATH, history
 from .launcher import OUT
@@ -52,14 +52,6 @@ def _frame(path: Path, names: list[str]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=names)
 
 
-def _local(path: Path, names: list[str]) -> pd.DataFrame:
-    """The rows of a `dump local`. Raises EngineError if it is not whole."""
-    values = dump.local(path)
-    if len(values) and values.shape[1] != len(names):
-        raise EngineError(f"{path}: {values.shape[1]} columns, expected {len(names)}")
-    return pd.DataFrame(values.reshape(-1, len(names)), columns=names)
-
-
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The rows of a run; the log has the forces of primitives on the spheres. Raises EngineError."""
     return log.scene_rows(p, out, {w.name for w in walls(p)} & {*p.measured_walls})
@@ -78,8 +70,8 @@ def kinds(p: ScenePlan) -> Kinds:
     found["particles"] = "particles.{}.bin", p.frames, partial(_frame, names=_particle_names(p))
     values, meshes = [*history(p.model), "overlap", *columns.FORCE], _meshes(p)
     pairs, touched = ["i", "j", *values], [*["mesh"] * (len(meshes) > 1), "i", *values, *POINTS]
-    found["contacts"] = "contacts.{}.txt", p.contacts, partial(_local, names=pairs)
-    found["wall_contacts"] = "wall_contacts.{}.txt", p.contacts * (len(meshes) > 0), partial(_local, names=touched)
+    found["contacts"] = "contacts.{}.txt", p.contacts, partial(text_frame, names=pairs)
+    found["wall_contacts"] = "wall_contacts.{}.txt", p.contacts * (len(meshes) > 0), partial(text_frame, names=touched)
     for name in p.stress_walls:
         found[f"stress_{name}"] = f"stress_{name}.{{}}.vtk", p.frames, partial(_stresses, p, name)
     return {kind: (file, p.frame_steps(every), read) for kind, (file, every, read) in found.items() if every}
