@@ -15,6 +15,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from epdem.base.files import running
 from epdem.case.impact import load
 from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
@@ -256,9 +257,9 @@ def test_60_points_killed_three_times_give_the_same_table_and_no_finished_point_
         process.send_signal(signal.SIGKILL if kill % 2 == 0 else signal.SIGINT)
         process.wait()
         end = time.monotonic() + 30
-        while slurm.running(out) and time.monotonic() < end:  # its processes end after it
+        while running(out) and time.monotonic() < end:  # its processes end after it
             time.sleep(0.01)
-        assert not slurm.running(out)
+        assert not running(out)
         now = finished(out)
         assert {k: v for k, v in now.items() if k in before} == before and len(now) > len(before)
         before = now
@@ -288,6 +289,20 @@ def test_calls_for_some_points_work_side_by_side_and_a_whole_call_finds_them_don
     assert json.loads(subprocess.check_output(whole))["ran"] == 0 and finished(out) == before
     alone = sweep(case, tmp_path / "alone", {"impact.body.radius": "1 mm,2 mm,4 mm,5 mm"})
     assert (out / "sweep.csv").read_bytes() == (tmp_path / "alone/sweep.csv").read_bytes() and alone.ran == 4
+
+
+def test_a_point_runs_as_long_as_its_process_whatever_began_it(case, tmp_path):
+    """One that a call for some points began, which does not hold the folder; then a process that is dead."""
+    planned, out = run.plan(case, {"impact.body.radius": "1 mm,2 mm"}), tmp_path / "out"
+    folder.write(planned, out)
+    about = folder.begin(planned, out, 2)
+    assert (slurm.status(out)["running"], slurm.status(out)["waiting"]) == (1, 1)
+    started = folder.point_folder(planned, out, 2) / folder.STARTED
+    dead = subprocess.Popen(["true"])
+    dead.wait()
+    for other in ({"pid": dead.pid}, {"begin": about["begin"] - 1e6}, {"host": "elsewhere"}):
+        started.write_text(json.dumps(about | other))
+        assert (slurm.status(out)["running"], slurm.status(out)["waiting"]) == (0, 2), other
 
 
 def test_points_of_a_call_are_those_of_the_sweep(case, tmp_path):

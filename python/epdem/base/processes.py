@@ -229,6 +229,16 @@ def session(leader: int) -> "list[psutil.Process]":
     return members
 
 
+def is_alive(number: int, at: float) -> bool:
+    """Whether the process of this number that was there at a time [s] since 1970 goes on on this machine."""
+    import psutil
+
+    with contextlib.suppress(psutil.NoSuchProcess):
+        process = psutil.Process(number)
+        return bool(process.status() != psutil.STATUS_ZOMBIE and process.create_time() <= at + 1.0)  # clocks differ
+    return False
+
+
 def engines_in(folder: Path) -> list[tuple[int, Path]]:
     """(number, folder of its run) of each living process of an engine that runs in `folder` or below it.
 

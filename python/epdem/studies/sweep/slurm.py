@@ -8,6 +8,7 @@ its walltime or preempted is queued again and goes on, and so does a sweep whose
 import json
 import shlex
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -15,7 +16,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...base.files import running, write_text
+from ...base.files import write_text
+from ...base.processes import is_alive
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from .folder import Sweep
@@ -174,12 +176,14 @@ def status(folder: Path) -> dict[str, Any]:
     """Progress of a sweep: counts by state, times [s], reasons of failed points."""
     sweep = store.read(folder)
     records = store.records(sweep, folder)
-    here = running(folder)
+    host = socket.gethostname()
     jobs = {about["job"] for about in records if about.get("job") and about["state"] == store.RUNNING}
     there = (alive(list(jobs)) or set()) if jobs else set()
 
     def state(about: dict[str, Any]) -> str:
-        gone = about["state"] == store.RUNNING and not (about["job"] in there if about["job"] else here)
+        gone = about["state"] == store.RUNNING and not (
+            is_alive(about["pid"], about["begin"]) if about["host"] == host else about["job"] in there
+        )
         return store.WAITING if gone else str(about["state"])
 
     states = [state(about) for about in records]
