@@ -141,12 +141,25 @@ def _points(points: pd.DataFrame) -> str:
     return markdown(wide)
 
 
+def restitution_table(points: pd.DataFrame) -> pd.DataFrame:
+    """Every measured e_n with what the laws give, and the rms of the errors of each law."""
+    points = points[points["quantity"] == "e_n"].assign(off=points["found"] - points["measured"])
+    keys = ["set", "speed", "measured", "uncertainty"]
+    wide = points.pivot_table(index=keys, columns="law", values="found").reset_index()
+    rms = points.groupby("law")[["off", "in_uncertainties"]].agg(lambda values: (values**2).mean() ** 0.5).T
+    names = {"off": "rms of the error", "in_uncertainties": "the same in uncertainties"}
+    return pd.concat([wide, rms.rename(index=names).rename_axis("set").reset_index()], ignore_index=True)
+
+
 def main() -> None:
     """Write the tables of docs/data and of the page, of the runs that are there."""
     runs = ROOT / "runs/community"
     result = validate(out=ROOT / "runs/validate", force=True)
     save(validation_chart(result), ROOT / "docs/figures", data=False)
     store("measured", result.summary)
+    found = restitution_table(result.points[result.points["engine"] == "liggghts"])
+    store("restitution", found)
+    replace_tables("evidence", {"restitution": markdown(load("restitution"))})
     _impact(runs)
     _drum(runs)
     tables = {"impact": impact_table(load("impact_25k")), "long": _long(runs), "points": _points(result.points)}

@@ -14,6 +14,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.verification import measured_data as validate
 from epdem.verification.pages import of_validation
+from scripts import DOCS
 
 E_STAR = 1.0 / ((1 - 0.22**2) / 600e9 + (1 - 0.3**2) / 208e9)
 P_M = 955 * 9.80665e6 * 2 / 1.8544  # of Vickers' hardness 955: load over the projection of the indentation
@@ -108,3 +109,17 @@ def test_the_width_of_a_dent_is_asked_of_laws_without_adhesion():
     data = read_toml(paths.beside("cases") / "adhesion_thornton_1998.toml")
     with pytest.raises(CaseError, match="the width of a dent under adhesion is not computed"):
         validate._simulated(experiment(parse(data)), pd.DataFrame({"overlap_max": [1e-9]}), pd.Series(["dent_width"]))
+
+
+def test_the_page_of_evidence_has_every_measured_e_n_and_the_rms_of_each_law():
+    """The rms by hand, from the lines of the table on the page."""
+    lines = (DOCS / "evidence.md").read_text().split("<!--restitution-->\n")[1].split("<!--/-->")[0].splitlines()
+    head, *rows = ([cell.strip() for cell in line.split("|")[1:-1]] for line in lines if "---" not in line)
+    points, (rms, scaled) = rows[:-2], rows[-2:]
+    measured = [p for name in validate.names() for p in validate.read(name).points.to_dict("records")]
+    assert sorted(float(row[2]) for row in points) == sorted(p["value"] for p in measured if p["quantity"] == "e_n")
+    for column in range(4, len(head)):
+        off = [float(row[column]) - float(row[2]) for row in points]
+        over = [o / float(row[3]) for o, row in zip(off, points, strict=True)]
+        for found, values in ((rms, off), (scaled, over)):
+            assert float(found[column]) == pytest.approx(np.sqrt(np.mean(np.square(values))), abs=5e-4, rel=6e-2)
