@@ -1,122 +1,176 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each scene as its case asks for it against the same with every sub-model on: writes docs/lean.md.
+"""What each feature adds to deck, history and step in three hosts: writes docs/lean.md and docs/data/lean.csv.
 
-    .venv/bin/python bench/lean.py [--out docs/lean.md] [--repeats 5]
+    .venv/bin/python bench/lean.py      (needs LIGGGHTS, LAMMPS and YADE; minutes)
 
-The full deck has friction, tangential dashpot, rolling friction, cohesion and the energy balance, with coefficients so
-small that the spheres do the same in the same time steps. Both run to 95 % of the scene once; the rest is then repeated
-in turns from the restart files, so that what else the machine does hits both, and the shortest time counts.
+A cubic lattice of spheres in contact between two walls; the same time step and number of steps for all features. The
+time of a step is the processor time of a run less that of a run of the case without features with few steps, over the
+difference of the steps. Runs of all features alternate, so that what else the machine does hits all, and the shortest
+time counts.
 """
 
-import argparse
+import resource
+import sys
 import tempfile
 from pathlib import Path
 
-from epdem.base.files import write_texts
-from epdem.case import scene as scenes
-from epdem.case.toml import read_toml
-from epdem.engines import log
-from epdem.engines.liggghts import launcher, resume
-from epdem.engines.liggghts.deck import files, memory
-from epdem.engines.restarts import whole_restarts
-from epdem.scenes.plan.plan import plan
-from epdem.theory.backbones import ADHESIVE
+import numpy as np
+import pandas as pd
+
+from epdem.api import Scene
+from epdem.engines import scene_engine
+from epdem.engines.host import Host
+from epdem.engines.liggghts.deck import memory
+from epdem.scenes.plan.plan import ScenePlan, plan
 
 ROOT = Path(__file__).parents[1]
-NOTHING = 1e-9
+sys.path.insert(0, str(ROOT / "docs"))
+HOSTS = ("liggghts", "lammps", "yade")
+SIDE, RADIUS, OVERLAP, STEP = 8, 1e-3, 2e-3, 1e-6  # spheres, m, over the diameter, s
+REPEATS = 3
+STEPS, FEW = {"liggghts": 10000, "lammps": 10000, "yade": 1500}, 20  # of a run
+RUB = {"friction": 0.3}
+ADHESIVE = {"name": "thornton_ning", "work_of_adhesion": "1e-3 J/m^2"}
+FEATURES: dict[str, dict] = {
+    "nothing: `thornton`, no friction": {},
+    '`law.name = "cavity"`': {"law": {"name": "cavity"}},
+    "`cavity` with `finite_strain`": {"law": {"name": "cavity", "finite_strain": True}},
+    "`cavity` with `finite_strain`, `compaction`": {
+        "law": {"name": "cavity", "finite_strain": True, "compaction": True}
+    },
+    '`law.name = "thornton_ning"` (adhesion)': {"law": ADHESIVE},
+    "`viscous`": {"viscous": {"restitution": 0.9}},
+    "`contact.friction`": {"contact": RUB},
+    'friction, `tangential = "partial_slip"`': {"contact": RUB | {"tangential": "partial_slip"}},
+    "friction, `tangential_restitution`": {"contact": RUB | {"tangential_restitution": 0.9}},
+    "friction, `rolling` `cdt`": {"contact": RUB | {"rolling": {"model": "cdt", "coefficient": 0.1}}},
+    "friction, `rolling` `epsd2`": {"contact": RUB | {"rolling": {"model": "epsd2", "coefficient": 0.1}}},
+    "friction, `cohesion`": {"contact": RUB | {"cohesion": "1 J/m^3"}},
+    "`output.energy`": {"output": {"rows": 20, "particles": 1, "energy": True}},
+    "`output.loads`": {"output": {"rows": 20, "particles": 1, "loads": True}},
+    "`output.contacts`": {"output": {"rows": 20, "particles": 1, "contacts": 1}},
+}
+ALL = {"viscous": {"restitution": 0.9}, "output": {"rows": 20, "particles": 1, "energy": True, "loads": True}}
+ROLLING = {"rolling": {"model": "epsd2", "coefficient": 0.1}, "cohesion": "1 J/m^3", "tangential_restitution": 0.9}
+FEATURES["friction, both dashpots, `epsd2`, cohesion, energy, loads"] = ALL | {"contact": RUB | ROLLING}
 
+TEXT = """# Lean decks
 
-def lean(data: dict) -> dict:
-    """The case without asked-for extras: the least that its physics needs."""
-    return data | {"output": {"rows": 20, "particles": 1, "restarts": 20}}
+`.venv/bin/python bench/lean.py` writes this page and [lean.csv](data/lean.csv). A deck contains only what the physics
+of its case requires. The table shows what a feature adds to the case without features, `thornton` without friction:
+lines of the deck, bytes of history per contact (the same in LIGGGHTS and LAMMPS; contacts of YADE have one size for all
+features) and time of a step as a ratio. The case is a lattice of {spheres} spheres, all in contact, between two walls;
+processor time on one core beside other programs, the shortest of {repeats} interleaved runs, which differ by some
+percent in LIGGGHTS and LAMMPS and by up to 15 % in YADE. LAMMPS has the options of a contact in one line.
 
+{table}
 
-def full(data: dict) -> dict:
-    """The case with every sub-model and the energy balance."""
-    nothing: dict = {"friction": NOTHING}
-    if "viscous" not in data:  # LIGGGHTS has one restitution for both dashpots
-        nothing["tangential_restitution"] = 0.999
-    if data["law"]["name"] not in ADHESIVE and not data["law"].get("compaction"):  # which have none beside their own
-        nothing["cohesion"] = f"{NOTHING} J/m^3"
-    rolling = {"rolling": {"model": "epsd2", "coefficient": NOTHING}}
-    output = {"rows": 20, "particles": 1, "restarts": 20, "energy": True, "loads": True}
-    return data | {"contact": nothing | rolling | data.get("contact", {}), "output": output, "numerics": {"error": 0.1}}
-
-
-def loop_seconds(folder: Path, name: str) -> float:
-    """Seconds per step in LIGGGHTS's loops; a scene's output stays in its folder, for the deck that continues it."""
-    out = launcher.OUT if name == "in.scene" else "out.resume"
-    launcher.run(name, folder, out=out)
-    loops = log.loops(folder / out)
-    return sum(t for t, _ in loops) / max(1, sum(n for _, n in loops))
-
-
-def lines(folder: Path) -> int:
-    """Lines of the deck that do something."""
-    text = (folder / "in.scene").read_text() + (folder / "setup.in").read_text()
-    return sum(1 for line in text.splitlines() if line.strip() and not line.startswith("#"))
-
-
-def measure(path: Path, repeats: int, scratch: Path) -> dict:
-    """The numbers of one scene."""
-    found: dict = {"name": path.stem}
-    folders = {}
-    data = read_toml(path)
-    step = plan(scenes.parse(full(data), path)).time_step  # sticking contacts need the smaller one
-    for name, make in (("lean", lean), ("full", full)):
-        p = plan(scenes.parse(make(data) | {"numerics": {"time_step": f"{step} s"}}, path))
-        folders[name] = folder = scratch / f"{path.stem}_{name}"
-        write_texts(folder, files(p))
-        found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * memory(p.model)
-        loop_seconds(folder, "in.scene")
-        resume.write_resume(p, folder, whole_restarts(folder, folder / launcher.OUT)[-1])
-    times: dict[str, list[float]] = {name: [] for name in folders}
-    for _ in range(repeats):
-        for name, folder in folders.items():
-            times[name].append(loop_seconds(folder, "in.resume"))
-    return found | {f"{name}_seconds": min(values) for name, values in times.items()}
-
-
-HEAD = """# Lean and full decks
-
-`.venv/bin/python bench/lean.py` writes this page. The *lean* deck contains only what the physics of the case requires.
-The *full* deck is the same scene with every sub-model on (friction, dashpot, rolling friction, cohesion, plastic work,
-wall loads), the same time step, and coefficients of 1e-9 for models that the case does not have. Times are for the last
-5 % of each scene on one rank, the shortest of several interleaved runs.
-
-| scene | deck lines full | lean | history bytes per contact full | lean | us per step full | lean | ratio |
-|---|---|---|---|---|---|---|---|
-"""
-TAIL = """
 `epdem deck CASE --reasons` writes a deck with the reason of each line. `tests/scenes/test_lean.py` removes each line of
 the deck of every case in turn and runs the deck again.
 """
 
 
-def page(rows: list[dict]) -> str:
+def scene(feature: dict, folder: Path, steps: int) -> ScenePlan:
+    """The plan of the lattice with a feature."""
+    spacing = 2 * RADIUS * (1 - OVERLAP)
+    axis = spacing * (np.arange(SIDE) + 0.5)
+    place = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
+    table = pd.DataFrame(place, columns=[*"xyz"]).assign(radius=RADIUS, material="glass")
+    table.to_csv(folder / "spheres.csv", index=False)
+    edge = spacing * SIDE
+    wall = {"kind": "plane", "axis": "z", "material": "glass"}
+    parts = {
+        "kind": "parts",
+        "gravity": 0.0,
+        "periodic": True,
+        "room": {"x": [0.0, edge], "y": [0.0, edge], "z": [0.0, edge]},
+        "wall": [wall | {"name": name, "at": at} for name, at in (("floor", 0.0), ("lid", edge))],
+        "fill": [{"name": "lattice", "file": str(folder / "spheres.csv")}],
+        "phase": [{"name": "run", "duration": STEP * steps}],
+    }
+    glass = {"young_modulus": "5 GPa", "poisson_ratio": 0.25, "density": "2500 kg/m^3", "yield_stress": "20 MPa"}
+    case = {
+        "case": {"name": "lattice", "title": "lattice"},
+        "materials": {"glass": glass},
+        "law": {"name": "thornton"},
+        "scene": parts,
+        "output": {"rows": 20, "particles": 1},
+        "numerics": {"time_step": STEP, "highest_speed": 1.0},
+    }
+    return plan(Scene(**(case | feature)).model)
+
+
+def lines(texts: dict[str, str]) -> int:
+    """Lines of the deck that do something; its tables and the modules beside it are not the deck."""
+    deck = (text for name, text in texts.items() if name.endswith((".in", ".scene", "scene.py")) or name == "setup.in")
+    return sum(1 for text in deck for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#"))
+
+
+def processor_time(tool: Host, folder: Path) -> float:
+    """Processor time [s] of a run of the deck in a folder."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    tool.start(tool.scripts[1], folder)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime
+
+
+def measure(repeats: int, scratch: Path) -> pd.DataFrame:
+    """One row for each feature and host: lines, bytes, time of a step [us]."""
+    rows = {}
+    for host in HOSTS:
+        start: list[float] = []
+        times: dict[str, list[float]] = {name: [] for name in FEATURES}
+        tool = scene_engine(host)
+        assert isinstance(tool, Host)
+        for number, (name, feature) in enumerate(FEATURES.items()):
+            for steps in (STEPS[host], FEW):
+                folder = scratch / f"{host}_{number}_{steps}"
+                folder.mkdir()
+                p = scene(feature, folder, steps)
+                texts = tool.files(p)
+                tool.put(texts, folder)
+            rows[name, host] = {"lines": lines(texts), "bytes": 8 * memory(p.model)}
+        for _ in range(repeats):
+            start.append(processor_time(tool, scratch / f"{host}_0_{FEW}"))
+            for number, name in enumerate(FEATURES):
+                times[name].append(processor_time(tool, scratch / f"{host}_{number}_{STEPS[host]}"))
+            print(host, start, times, flush=True)
+        for name in FEATURES:
+            rows[name, host]["us_per_step"] = 1e6 * (min(times[name]) - min(start)) / (STEPS[host] - FEW)
+    keys = pd.DataFrame([*rows], columns=["feature", "host"])
+    return keys.assign(**pd.DataFrame(rows.values()))
+
+
+def page(found: pd.DataFrame, repeats: int) -> str:
     """The page of the documentation."""
-    body = []
-    for r in rows:
-        a, b = r["full_seconds"] * 1e6, r["lean_seconds"] * 1e6
-        cells = (r["name"], r["full_lines"], r["lean_lines"], r["full_bytes"], r["lean_bytes"], f"{a:.4g}", f"{b:.4g}")
-        body.append("| " + " | ".join(map(str, cells)) + f" | {a / b:.2f} |\n")
-    return HEAD + "".join(body) + TAIL
+    from pages import markdown
+
+    base = found[found["feature"] == next(iter(FEATURES))].set_index("host")
+    table = []
+    for feature, rows in found.groupby("feature", sort=False):
+        rows = rows.set_index("host")
+        more, ratio = rows["lines"] - base["lines"], rows["us_per_step"] / base["us_per_step"]
+        added = f"{rows['bytes'].iloc[0] - base['bytes'].iloc[0]:+d}"
+        if not table:
+            more, ratio, added = rows["lines"], rows["us_per_step"], str(rows["bytes"].iloc[0])
+        shown = [f"{more[h]:+d}" if table else f"{more[h]}" for h in HOSTS]
+        shown += [added, *(f"{ratio[h]:.2f}" if table else f"{ratio[h]:.0f} us" for h in HOSTS)]
+        titles = [TITLES[h] for h in HOSTS]
+        columns = ["feature", *(f"lines, {t}" for t in titles), "history bytes", *(f"step, {t}" for t in titles)]
+        table.append(dict(zip(columns, [feature, *shown], strict=True)))
+    return TEXT.format(spheres=SIDE**3, repeats=repeats, table=markdown(pd.DataFrame(table)))
+
+
+TITLES = {"liggghts": "LIGGGHTS", "lammps": "LAMMPS", "yade": "YADE"}
 
 
 def main() -> None:
-    """Measure every scene in cases/ and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=ROOT / "docs/lean.md")
-    parser.add_argument("--repeats", type=int, default=5)
-    options = parser.parse_args()
+    """Measure every feature and write the page."""
+    from pages import load, store
+
     with tempfile.TemporaryDirectory(prefix="epdem_lean_") as scratch:
-        rows = [
-            measure(p, options.repeats, Path(scratch))
-            for p in sorted((ROOT / "cases").glob("*.toml"))
-            if scenes.is_scene(read_toml(p))
-        ]
-    options.out.write_text(page(rows))
-    print(options.out.read_text())
+        store("lean", measure(REPEATS, Path(scratch)))
+    (ROOT / "docs/lean.md").write_text(page(load("lean"), REPEATS), encoding="utf-8")
 
 
 if __name__ == "__main__":

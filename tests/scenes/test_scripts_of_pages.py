@@ -70,13 +70,25 @@ def scripts(monkeypatch):
         sys.modules.pop(name, None)
 
 
-@pytest.mark.parametrize("kind", ["settle", "compaction"])
-def test_lean_and_full_decks_are_measured(kind, scripts, tmp_path):
+def test_what_a_feature_adds_is_measured_and_the_page_has_it(scripts, tmp_path, monkeypatch):
+    """History by hand: the law and a stamp, three values of the spring of friction, three of epsd2; 8 bytes each."""
     import lean
 
-    found = lean.measure(STORED / kind / "case.toml", 1, tmp_path)
-    assert found["lean_lines"] < found["full_lines"] and min(found["lean_seconds"], found["full_seconds"]) > 0.0
-    assert found["name"] in lean.page([found])
+    names = [next(iter(lean.FEATURES)), "`contact.friction`", "friction, `rolling` `epsd2`", "`output.loads`"]
+    monkeypatch.setattr(lean, "HOSTS", ("liggghts",))
+    monkeypatch.setattr(lean, "STEPS", {"liggghts": 2000})
+    monkeypatch.setattr(lean, "FEATURES", {name: lean.FEATURES[name] for name in names})
+    found = lean.measure(1, tmp_path)
+    assert found["bytes"].tolist() == [16, 40, 64, 16]
+    assert found["lines"].is_monotonic_increasing and (found["us_per_step"] > 0).all()
+    assert "| `contact.friction` | +1 | +24 |" in lean.page(found, 1)
+
+
+def test_the_page_of_lean_decks_is_that_of_its_table(scripts):
+    import lean
+    from pages import load
+
+    assert (ROOT / "docs/lean.md").read_text() == lean.page(load("lean"), lean.REPEATS)
 
 
 def test_a_run_of_the_benchmark_goes_on_from_its_restart_file(scripts, tmp_path, monkeypatch):
