@@ -25,6 +25,8 @@ SENTENCES = {
     ("predict", "--speed", "0 m/s"): "impact.speeds.0 = '0 m/s', must lie in (0, inf)",
     ("predict", "--radius", "3 kg"): "impact.body.radius = '3 kg', the unit 'kg' has the wrong dimension",
     ("predict", "steel.toml", "--error", "1"): "'--error': must be less than or equal to 0.1; see epdem predict",
+    ("run", "steel.toml", "--error", "1"): "'--error': must be less than or equal to 0.1; see epdem run --help",
+    ("run", "steel.toml", "--error", "1e-3", "--steps", "9"): "--error: --steps gives the time step; leave it out",
     ("predict", "steel.toml", "--speed", "1 m/s"): "steel.toml: --speed: the case has its own numbers; leave it out",
     ("predict", "--law", "hertz"): "--law: it belongs to a case; leave it out",
     ("calibrate", "steel.toml", "--hv", "-o"): "'--hv': must be a number; see epdem calibrate --help",

@@ -35,7 +35,7 @@ HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9
 HARDNESS |= {"measured": None, "uncertainty": "0.01", "ranks": "2", "jobs": "1", "out": "there", "force": None}
 TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
-RUN |= {"full": None, "pictures": "svg", "force": None}
+RUN |= {"error": "1e-2", "full": None, "pictures": "svg", "force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
 DECK |= {"convert": None, "check": None, "reasons": None}
 MY_DECK = """fix m all property/global youngsModulus peratomtype 1e7

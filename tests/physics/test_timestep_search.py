@@ -73,7 +73,7 @@ def test_a_case_with_an_error_instead_of_steps_gets_the_searched_step_and_keeps_
     x = experiment(parse(data))
     prediction = predict(x)
     p = plan(x, prediction)
-    assert p.time_step == times.search(x, prediction, 1e-3).time_step
+    assert p.time_step == times.matched_step(x, prediction, 1e-3).time_step
     e_n = measure(p, engine("embedded").run(p, tmp_path)).e_n.to_numpy().reshape(x.speed.size, -1)
     assert 1e-4 <= np.abs(e_n / prediction.e_n[:, None] - 1).max() <= 1e-3
 

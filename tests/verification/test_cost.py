@@ -53,10 +53,13 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
     numbers = {"spheres": 512, "error": 1e-4, "order": 2.0}
     steps = [{"share": 0.1, "rms": 4e-4}, {"share": 0.05, "rms": 1e-4}]
     bulk = pd.DataFrame([{"model": "liggghts, cavity"} | numbers | step for step in steps])
-    text = page.document(*cost_report.tables(embedded, bulk).values())
+    changes = {"density": [1e-3, 2e-3], "force": [0.05, 0.02], "plastic_work": [1e-2, 3e-3]}
+    bed = pd.DataFrame({"law": ["cavity", "johnson"], "spheres": 432, "share": 0.1} | changes)
+    text = page.document(*cost_report.tables(embedded, bulk).values(), bed)
     assert "512 steel spheres" in text
     assert "| model | 0.1 | 0.05 | order |\n|---|---|---|---|\n| liggghts, cavity | 0.0004 | 0.0001 | 2 |" in text
-    assert "`.venv/bin/python docs/cost.py`" in text and "| embedded, cavity |" in text
+    assert "`.venv/bin/python docs/cost.py`" in text and "| cavity |" in text
+    assert "| 0.1 | 0.002 | 0.05 | 0.01 |" in text  # largest of the laws
     assert json.dumps(embedded.models.to_dict("list"))
 
 
@@ -74,8 +77,19 @@ def test_our_plugin_converges_where_the_built_in_thornton_ning_does_not():
     assert 0.02 < found.loc["liggghts-thornton_ning", "best_error"] < 0.2
     assert np.isnan(found.loc["liggghts-thornton_ning", "steps_for_0.01"])
     assert found.loc["liggghts-hertz", "ratio_to_hertz"] == 1
-    parts = outcome.rows[["startup", "setup", "stepping"]]
-    assert np.all(np.isfinite(parts)) and np.all(parts >= 0) and np.all(outcome.rows["stepping"] > 0)
+    parts = outcome.rows[["startup", "setup", "ns_per_step"]]
+    assert np.all(np.isfinite(parts)) and np.all(parts >= 0) and np.all(outcome.rows["ns_per_step"] > 0)
+
+
+@pytest.mark.parametrize(
+    "host", [pytest.param("lammps", marks=pytest.mark.lammps), pytest.param("yade", marks=pytest.mark.yade("module"))]
+)
+def test_hertz_of_lammps_and_yade_have_the_modulus_of_the_case(host):
+    """Peak force of theory goes as E*^(2/5): a wrong modulus shows in it, not in e_n."""
+    outcome = cost.run(STEEL, engines=[host], laws=["hertz"], steps=(300,), repetitions=1)
+    own = outcome.rows.set_index("model").loc[{"lammps": "lammps-hertz", "yade": "yade-mindlin"}[host]]
+    assert own["e_n_error"] < 1e-5 and own["force_max_error"] < 1e-4 and own["contact_time_error"] < 1e-4
+    assert own["ns_per_step"] > 0
 
 
 def test_the_ratio_is_to_the_reference_of_the_same_repetition_and_step():

@@ -66,6 +66,10 @@ def run(
     steps: Annotated[
         int | None, typer.Option(min=5, max=100_000, help="steps in contact instead of the case's")
     ] = None,
+    error: Annotated[
+        float | None,
+        typer.Option(min=1e-9, max=0.1, help="find the steps in contact for this largest relative error of e_n"),
+    ] = None,
     out: Out = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="run again although results are stored")] = False,
     resume: Annotated[
@@ -86,7 +90,7 @@ def run(
     if full and as_json:
         raise CaseError("--full: --json holds all rows; leave it out")
     if cli_scene.is_scene(case):
-        refuse_options(case, "a scene has its own law and time step", law=law, steps=steps)
+        refuse_options(case, "a scene has its own law and time step", law=law, steps=steps, error=error)
         refuse_options(case, "it is for impacts; a scene prints all its checks", full=full)
         if len(set(engines)) > 1:
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
@@ -100,7 +104,9 @@ def run(
     refuse_options(
         case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume
     )
-    options |= {"steps": steps, "laws": law or []}
+    if steps is not None:
+        refuse_options(case, "--steps gives the time step", error=error)
+    options |= {"steps": steps, "error": error, "laws": law or []}
     raise _run_impacts(case, engines=engines, formats=kinds, full=full, as_json=as_json, **options)
 
 

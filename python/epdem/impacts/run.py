@@ -22,12 +22,14 @@ from ..errors import CaseError
 from ..jobs.engine import require
 from ..jobs.stage import Inputs, Stage, Tables, inputs, stage
 from . import store
-from .comparison import compare
+from .comparison import CHECKED, compare
 from .engine import ImpactEngine, check_plan
 from .experiment import experiment
 from .measurement import measure, sample_impacts
 from .plan import Plan, plan
 from .prediction import Prediction, predict
+
+ALLOWED = 1.5  # measured error of e_n over the requested one, at most
 
 
 @dataclass
@@ -40,7 +42,7 @@ class Outcome:
     predictions: dict[str, Prediction]
     plans: dict[str, Plan]  # by law
     ranks: int
-    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
+    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: found for `error`), own_law
     seconds: dict[str, float] = field(default_factory=dict)
     reused: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -154,8 +156,9 @@ def prepare(
             warnings += predictions[law].warnings
             for tool in tools:
                 warnings += [f"{tool.name}: {note}" for note in check_plan(tool, p, predictions[law], ranks=ranks)]
-    steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
-    how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
+    error = case.numerics.error or 0.0
+    steps = 0 if error else case.numerics.steps_in_contact
+    how: dict[str, object] = {"ranks": ranks, "steps": steps, "error": error, "own_law": not laws}
     results = store.Results(case_text=loaded.text)
     return Outcome(case, folder, results, predictions, plans, ranks, how, warnings=warnings)
 
@@ -194,12 +197,17 @@ def fill(
             keep()
 
 
-def _read(path: Path | str, steps: int | None) -> LoadedCase:
+def _read(path: Path | str, steps: int | None, error: float | None) -> LoadedCase:
+    """A case with other steps in contact, or with another error of e_n, which then alone is checked."""
     data = read_toml(path)
-    if steps is not None:
-        data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
-        data["numerics"].pop("error", None)
-    return LoadedCase(parse(data, path), text_of(path), path)
+    if steps is not None or error is not None:
+        own = {k: v for k, v in data.get("numerics", {}).items() if k not in ("steps_in_contact", "error")}
+        data["numerics"] = own | ({"steps_in_contact": steps} if error is None else {"error": error})
+    case = parse(data, path)
+    if error is not None:
+        check = case.check.model_copy(update=dict.fromkeys(CHECKED, math.inf) | {"e_n": ALLOWED * error})
+        case = case.model_copy(update={"check": check})
+    return LoadedCase(case, text_of(path), path)
 
 
 def run(
@@ -208,6 +216,7 @@ def run(
     engines: Sequence[ImpactEngine],
     laws: Sequence[str] = (),
     steps: int | None = None,
+    error: float | None = None,
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -216,11 +225,11 @@ def run(
 ) -> Outcome:
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
 
-    `steps` replaces the steps in contact of a case in a file. `fresh` ignores stored results; `force` allows a folder
-    in which there are other files. All input is checked and every engine looked for before anything is written or
-    started.
+    `steps` replaces the steps in contact of a case in a file, `error` finds them for a largest error of e_n. `fresh`
+    ignores stored results; `force` allows a folder in which there are other files. All input is checked and every
+    engine looked for before anything is written or started.
     """
-    loaded = case if isinstance(case, LoadedCase) else _read(case, steps)
+    loaded = case if isinstance(case, LoadedCase) else _read(case, steps, error)
     tools, folder = list({tool.name: tool for tool in engines}.values()), results_folder(out, loaded.model.name)
     require(*tools)
     outcome = prepare(loaded, tools, laws, ranks, folder)

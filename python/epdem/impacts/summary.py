@@ -9,6 +9,7 @@ from rich.table import Table
 
 from ..base.terminal import Shown, frame_table, warned
 from .comparison import CHECKED
+from .cost import costs, sentence
 from .prediction import predict
 from .prediction_report import plain, yielding
 from .run import Outcome
@@ -61,6 +62,7 @@ def document(outcome: Outcome) -> dict[str, object]:
         "seconds": outcome.seconds,
         "yields": {law: list(p.yields) for law, p in outcome.predictions.items()},
         "warnings": outcome.warnings,
+        "cost": {law: cost for law, (_, cost) in _costs(outcome).items()},
         "rows": records(outcome.results.comparison),
     }
 
@@ -143,9 +145,29 @@ def against_measured(outcome: Outcome) -> list[str]:
     return lines
 
 
+def _costs(outcome: Outcome) -> dict[str, tuple[float, dict[str, float]]]:
+    """Steps in the shortest contact and cost by engine of the run, of laws whose step was found for an error."""
+    if (error := outcome.case.numerics.error) is None:
+        return {}
+    found = {}
+    for law, p in outcome.plans.items():
+        cost = {name: c for name, c in costs(p.experiment, p.time_step, error).items() if name in outcome.seconds}
+        found[law] = float(outcome.predictions[law].duration.min() / p.time_step), cost
+    return found
+
+
+def cost_lines(outcome: Outcome) -> list[str]:
+    """One line for every law whose step was found for an error."""
+    error = outcome.case.numerics.error
+    return [
+        f"{law}: {steps:.0f} steps in the shortest contact for e_n within {error:g}; {sentence(cost)}"
+        for law, (steps, cost) in _costs(outcome).items()
+    ]
+
+
 def shown(outcome: Outcome, *, full: bool = False) -> list[Shown]:
     """Table, errors, warnings and summary."""
     few, all_rows = len(select_rows(outcome, full)), len(outcome.results.comparison)
     cut = [f"{few} of {all_rows} rows; --full prints all"] if few < all_rows else []
-    lines = [*cut, *largest_errors(outcome), *against_measured(outcome)]
+    lines = [*cut, *largest_errors(outcome), *cost_lines(outcome), *against_measured(outcome)]
     return [run_table(outcome, full=full), *lines, *warned(outcome.warnings), summary(outcome)]

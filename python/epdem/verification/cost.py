@@ -15,18 +15,20 @@ import pandas as pd
 
 from ..case.impact import Case, load
 from ..case.toml import error_context
-from ..engines import DEFAULT_ENGINE, ImpactEngine
+from ..engines import ImpactEngine
 from ..errors import EngineError
+from ..impacts.comparison import CHECKED
 from ..impacts.experiment import experiment, pair_of
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
 from ..jobs.engine import require
-from ..laws.strengths import default_numbers
-from .models import REFERENCE, SAME_LAW, engine, only_law
+from ..laws.strengths import default_numbers, find_law
+from .models import ELASTIC, OWN_LAW, REFERENCE, SAME_LAW, engine, only_law
 from .runner import STUDIES, Progress, compare_impacts, silent
 from .stability.cases import HARDENING
 from .timing import seconds
 
+TIMED = 300  # least steps in contact of the runs that are timed
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
 TARGETS = (1e-2, 1e-3, 1e-4)
@@ -46,7 +48,8 @@ class Model:
     @property
     def label(self) -> str:
         """The model in tables and figures."""
-        return self.engine.name if only_law(self.engine) else f"{self.engine.name}, {self.law}"
+        own = only_law(self.engine) or hasattr(self.engine, "own")
+        return self.engine.name if own else f"{self.engine.name}, {self.law}"
 
 
 @dataclass(frozen=True)
@@ -60,14 +63,18 @@ class Outcome:
 
 
 def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Model]:
-    """Pairs of engine and reference. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
-    engines = [*engines, *(SAME_LAW if DEFAULT_ENGINE in engines else ())]
+    """Pairs of engine and law. With a host come its own models; LIGGGHTS's own hertz is the reference."""
+    theirs: dict[str, type[ImpactEngine]] = {**SAME_LAW, **ELASTIC, "lammps-mdr": OWN_LAW["lammps-mdr"]}
+    if all(find_law(law).adheres for law in laws or [case.law.name]):
+        theirs = {REFERENCE: SAME_LAW[REFERENCE]}
+    engines = [*engines, *(name for name in theirs if name.split("-")[0] in engines)]
     numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
     chosen = []
     for name in dict.fromkeys(engines):
-        tool = engine(name)
+        tool = theirs[name]() if name in theirs else engine(name)
         require(tool)
-        for law in [only] if (only := only_law(tool)) else laws or [case.law.name]:
+        only = case.law.name if name in OWN_LAW else only_law(tool)
+        for law in [only] if only else laws or [case.law.name]:
             # the case's own law keeps the case's parameters
             x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
             if law != case.law.name and HARDENING in (defaults := default_numbers(law)).ratios:
@@ -78,6 +85,14 @@ def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ..
             plans = {n: plan(x, prediction, time_step=shortest / n) for n in steps}
             chosen.append(Model(tool, law, prediction, plans))
     return chosen
+
+
+def converged(c: Model, folder: Path) -> Model:
+    """The model with its own limit in place of theory: means over the phases at half the finest step."""
+    p = c.plans[max(c.plans)]
+    fine = plan(p.experiment, c.prediction, time_step=0.5 * p.time_step)
+    rows, _ = compare_impacts(replace(fine, steps=2 * fine.steps), c.prediction, c.engine, folder)
+    return replace(c, prediction=replace(c.prediction, **{name: rows[name].to_numpy() for name in CHECKED}))
 
 
 def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
@@ -104,9 +119,7 @@ def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
     return rows[good].iloc[-1] if good.any() else None
 
 
-def _timings(
-    chosen: list[Model], steps: tuple[int, ...], repetitions: int, folder: Path, progress: Progress
-) -> pd.DataFrame:
+def _timings(chosen: list[Model], steps: list[int], repetitions: int, folder: Path, progress: Progress) -> pd.DataFrame:
     """One row per repetition, model and steps. Models alternate, so that drifts of the machine hit all."""
     rows: list[dict[str, Any]] = []
     for k in range(repetitions):
@@ -141,23 +154,26 @@ def run(
     with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
         folder = Path(scratch)
         for c in chosen:
+            progress(f"limit: {c.label}")
+            c = converged(c, folder) if hasattr(c.engine, "own") else c
             for n in steps:
                 progress(f"error: {c.label}, {n} steps")
                 row = {"model": c.label, "engine": c.engine.name, "law": c.law, "steps": n, "impacts": c.plans[n].n}
                 rows.append(row | errors(c, c.plans[n], folder))
-        times = _timings(chosen, steps, repetitions, folder, progress)
+        timed = [n for n in steps if n >= min(TIMED, max(steps))]
+        times = _timings(chosen, timed, repetitions, folder, progress)
     return Outcome(case, *_combine(pd.DataFrame(rows), times), time.perf_counter() - begin)
 
 
 def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Medians of the times beside the errors; then one row per model."""
     times["ratio"] = over_reference(times, "ns_per_step", ["repetition", "steps"])
-    middle = times.groupby(["model", "steps"])[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
-    rows = rows.merge(middle.reset_index(), on=["model", "steps"])
-    rows["ns_per_impact"] = rows["stepping"] / rows["impacts"] * 1e9
+    middle = times.groupby("model")[["startup", "setup", "ns_per_step", "ratio"]].median()
+    rows = rows.merge(middle.reset_index(), on="model")
+    rows["ns_per_impact"] = rows["ns_per_step"] * rows["steps"]
     summary = []
     for label, part in rows.groupby("model", sort=False):
-        fine = times[(times["model"] == label) & (times["steps"] >= min(300, part["steps"].max()))]
+        fine = times[times["model"] == label]
         row = {
             "model": label,
             "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),

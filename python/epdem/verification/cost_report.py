@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,9 +20,10 @@ def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> 
 
 
 def chart(outcome: Outcome) -> Chart:
-    """The work-precision figure: error of e_n against stepping time and against steps.
+    """The work-precision figure: error of e_n against time per contact and against steps.
 
-    A colour is a law, a kind of points an engine; models of other codes are black and grey.
+    A colour is a law, a kind of points an engine; models of other codes are black. Errors of a law are those of the
+    first engine: the other ones repeat them.
     """
     left: list[Series] = []
     right: list[Series] = []
@@ -29,24 +31,27 @@ def chart(outcome: Outcome) -> Chart:
     laws: list[str] = []
     for label, part in outcome.rows.groupby("model", sort=False):
         engine, _, law = str(label).partition(", ")
-        engines += [engine] if engine not in engines else []
-        laws += [law] if law and law not in laws else []
-        other = INK if engine.endswith("hertz") else GREY
-        colour, k = laws.index(law) % len(PALETTE) if law else other, engines.index(engine)
         error, steps = part["e_n_error"].to_numpy(), part["steps"].to_numpy(float)
-        left.append(Series("", part["ns_per_impact"].to_numpy(), error, colour, "solid", k))
-        right.append(Series(str(label), steps, error, colour, "solid", k))
-        right.append(Series("", steps, part["e_n_rms"].to_numpy(), colour, "dot", width=1.0))
+        is_new = engine not in engines
+        engines += [engine] if is_new else []
+        k = engines.index(engine)
+        colour: Any = INK
+        if law:
+            laws += [law] if law not in laws else []
+            colour = laws.index(law) % len(PALETTE)
+        left.append(Series(engine if is_new else "", part["ns_per_impact"].to_numpy(), error, colour, "solid", k))
+        if not law or k == 0:
+            right.append(Series(law or engine, steps, error, colour, "solid" if law else "dot", k))
     n = np.array([outcome.rows["steps"].min(), outcome.rows["steps"].max()], float)
     right.append(Series("order 2", n, 5 * n**-2.0, GREY, "dash"))
     error_axis = Axis("largest error of $e_n$", log=True)
     return Chart(
         "cost",
         f"{outcome.case.case.title}: error against run time",
-        "Error of e_n against the stepping time of an impact and against the steps in the shortest contact, one curve "
-        "for each model; dotted: root of the mean square.",
+        "Error of e_n against the time of a contact, steps times time per step, and against the steps in the shortest "
+        "contact, one curve for each model.",
         [
-            Panel(Axis("stepping time of an impact", "ns", log=True), error_axis, left),
+            Panel(Axis("time of a contact", "ns", log=True), error_axis, left),
             Panel(Axis("steps in the shortest contact", log=True), error_axis, right),
         ],
         beside=True,

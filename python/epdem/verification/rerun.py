@@ -98,6 +98,7 @@ def _impacts(path: Path, scratch: Path, progress: Progress) -> Rerun:
             laws=() if about["own_law"] else (law,),
             ranks=int(str(about["ranks"])),
             steps=int(str(about["steps"])) or None,
+            error=float(str(about.get("error", 0.0))) or None,
             out=out,
         )
         new = store.read(out / "results.h5")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..engines import ImpactEngine
 from ..engines.embedded import Embedded, numbers
-from ..engines.liggghts import launcher
+from ..engines.host import Host
 from ..engines.liggghts.engine import Liggghts
 from ..engines.log import loop_seconds
 from ..impacts.plan import Plan
@@ -17,12 +17,8 @@ def seconds(tool: ImpactEngine, plan: Plan, folder: Path) -> dict[str, float]:
     """Times of one run with the least possible output [s]: startup, setup, stepping; NaN where unknown."""
     if isinstance(tool, Embedded):
         return _embedded(plan)
-    if isinstance(tool, Liggghts):
-        return _liggghts(tool, plan, folder)
-    begin = time.perf_counter()  # this engine always writes samples: its own stepping, and the rest as setup
-    tool.write(plan, folder)
-    stepping = tool.run(plan, folder).seconds.get("stepping", math.nan)
-    return {"startup": math.nan, "setup": time.perf_counter() - begin - stepping, "stepping": stepping}
+    assert isinstance(tool, Host)
+    return _host(tool, plan, folder)
 
 
 def _embedded(plan: Plan) -> dict[str, float]:
@@ -33,13 +29,17 @@ def _embedded(plan: Plan) -> dict[str, float]:
     return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
 
 
-def _liggghts(tool: Liggghts, plan: Plan, folder: Path) -> dict[str, float]:
+def _host(tool: Host, plan: Plan, folder: Path) -> dict[str, float]:
     deck, *_ = tool.write(plan, folder)
     lines = deck.read_text(encoding="utf-8").splitlines(keepends=True)
     # stepping, not writing
-    deck.write_text("".join(line for line in lines if not line.startswith("dump ")), encoding="utf-8")
-    (folder / "in.empty").write_text("# nothing\n", encoding="utf-8")
-    startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
-    total = launcher.run(deck.name, folder, seconds=600)
-    stepping = loop_seconds(folder / launcher.OUT)
-    return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
+    kept = (line for line in lines if not line.startswith(("dump", '    PyRunner(command="record()"')))
+    deck.write_text("".join(kept), encoding="utf-8")
+    startup = math.nan
+    if isinstance(tool, Liggghts):
+        (folder / "in.empty").write_text("# nothing\n", encoding="utf-8")
+        startup = tool.start("in.empty", folder, out="out.empty", seconds=120)
+    total = tool.start(deck.name, folder, seconds=600)
+    stepping = loop_seconds(folder / tool.launcher.OUT)
+    setup = total - stepping - (0.0 if math.isnan(startup) else startup)
+    return {"startup": startup, "setup": max(setup, 0.0), "stepping": stepping}

@@ -5,10 +5,10 @@ from typing import Protocol
 
 from ...engines import ENGINES, ImpactEngine
 from ...errors import CaseError
-from .lammps import LammpsMdr
+from .lammps import LammpsHertz, LammpsMdr
 from .liggghts import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
 from .theories import OtherLaw
-from .yade import YadeLuding
+from .yade import YadeLuding, YadeMindlin
 
 
 class OwnLaw(ImpactEngine, Protocol):
@@ -19,6 +19,7 @@ class OwnLaw(ImpactEngine, Protocol):
 
 # Models that have one of epdem's laws: the theory of the case is theirs, too.
 SAME_LAW: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (ThorntonNing, BuiltinHertz)}
+ELASTIC: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (LammpsHertz, YadeMindlin)}  # for `cost`
 # Models with a law and a theory of their own: for `crosscheck`.
 OWN_LAW: dict[str, type[OwnLaw]] = {
     tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
@@ -28,7 +29,7 @@ REFERENCE = BuiltinHertz.name  # run times are given as ratios to the time of th
 
 def engine(name: str) -> ImpactEngine:
     """The engine or the model of that name. Raises CaseError for a model with a law of its own."""
-    known = ENGINES | SAME_LAW
+    known = ENGINES | SAME_LAW | ELASTIC
     if name in OWN_LAW:
         raise CaseError(f"--engine {name!r} has a law of its own, not the case's; see 'epdem verify crosscheck'")
     if name not in known:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE's own Luding law on the same plans, for comparison."""
+"""YADE's own laws of Luding and of Hertz and Mindlin on the same plans, for comparison."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,30 @@ from ...engines.yade.classes import DeckMaterial
 from ...engines.yade.deck import Anvil, ImpactDeck
 from ...engines.yade.engine import Yade
 from ...impacts.plan import Plan
-from ...jobs.engine import Report, silent
+from ...jobs.engine import Feature, Report, silent
 from ...scenes.plan.model import Model
+from ...scenes.plan.plan import ScenePlan
 from .theories import Luding, OtherLaw
+
+
+class YadeMindlin(Yade):
+    """YADE's `Law2_ScGeom_MindlinPhys_Mindlin` without damping in the deck of `hertz`: the elastic limit."""
+
+    name = "yade-mindlin"
+    laws: tuple[str, ...] | None = ("hertz",)
+    features = frozenset({Feature.DECK, Feature.POSITIONS})
+    of_classes = frozenset()
+
+    def files(self, job: Plan | ScenePlan) -> dict[str, str]:
+        names = {r"from epdem_yade import .*": "from yade.wrapper import FrictMat, Ip2_FrictMat_FrictMat_MindlinPhys\n"}
+        names[r"Law2_ScGeom_EpPhys_Hertz\(.*?\)"] = "Law2_ScGeom_MindlinPhys_Mindlin()"
+        names |= {r"Ip2_EpMat_EpMat_EpPhys\(.*?\)\]": "Ip2_FrictMat_FrictMat_MindlinPhys()]", r"\bEpMat\(": "FrictMat("}
+        names[r"    InteractionLoop,"] = "    InteractionLoop,\n    Law2_ScGeom_MindlinPhys_Mindlin,"
+        names[r"Ig2_Wall_Sphere_ScGeom\(\)"] = "Ig2_Wall_Sphere_ScGeom(hertzian=True)"  # R* = R
+        texts = super().files(job)
+        for pattern, text in names.items():
+            texts["impact.py"] = re.sub(pattern, text, texts["impact.py"])
+        return texts
 
 
 class YadeLuding(Yade):
