@@ -21,6 +21,10 @@ FIGURES = {  # the command, and where the figure is then
         "epdem run cases/oblique_steel.toml -e embedded -e liggghts -o runs/docs/oblique",
         "runs/docs/oblique/psi.png",
     ),
+    "conductance.png": (
+        "epdem run cases/press_layer.toml -e lammps -o runs/docs/layer",
+        "runs/docs/layer/conductance.png",
+    ),
     "tablet.png": ("epdem run cases/press_tablet.toml -o runs/docs/press", "runs/docs/press/bed.png"),
     "figure_8_16.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_16.png"),
     "figure_8_17.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_17.png"),

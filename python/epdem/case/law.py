@@ -35,11 +35,12 @@ class LawChoice(BaseModel):
 
 
 class LawMaterial(Material):
-    """A material that can have the strength of the law as a key (yield_pressure = "3 GPa"), and of scenes with heat."""
+    """A material that can have the strength of the law as a key (yield_pressure = "3 GPa"); scenes conduct."""
 
     model_config = ConfigDict(frozen=True, extra="allow", strict=True)
     thermal_conductivity: Annotated[float, Quantity("W/(m K)", above=0.0)] | None = None
     specific_heat: Annotated[float, Quantity("J/(kg K)", above=0.0)] | None = None
+    electrical_conductivity: Annotated[float, Quantity("S/m", above=0.0)] | None = None
 
     def own_strength(self, name: str, law: str) -> float | None:
         """The strength [Pa] that the material `name` has as the key of this law. Raises CaseError for other keys."""

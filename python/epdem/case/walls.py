@@ -55,11 +55,12 @@ class Upright(Frozen):
 
 
 class _Wall(Frozen):
-    """temperature: fixed; a wall without one takes no heat."""
+    """temperature, potential: fixed; a wall without one takes no heat, or no current."""
 
     name: PartName
     material: Name
     temperature: Temperature | None = None
+    potential: Annotated[float, Quantity("V")] | None = None
 
 
 class PlaneWall(_Wall):

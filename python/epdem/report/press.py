@@ -152,6 +152,18 @@ def sides(p: ScenePlan, tables: Tables) -> list[Panel]:
     )
 
 
+def conductance(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """Conductance between punch and floor against pressure, at the ends of loading and of releases."""
+    ends, series = tables["stages"], []
+    if "conductance" not in ends:
+        return []
+    loading = ends["springback"].isna()
+    for name, at, marker in (("loading", loading, 0), ("release", ~loading, 1)):
+        x, y = (ends[column][at].to_numpy() for column in ("pressure", "conductance"))
+        series.append(Series(name, x, y, marker, "solid" if name == "loading" else None, marker))
+    return [Panel(PRESSURE, Axis("conductance", "S"), series)]
+
+
 @dataclass(frozen=True)
 class Figure:
     """A figure of a press: heading, caption, and its panel, or none where the tables lack the data."""
@@ -187,6 +199,11 @@ FIGURES = dict(
                 "Pressure on the sides by height",
                 "Normal force on the sides over their area, in slices of the bed, at the end of each loading.",
                 sides,
+            ),
+            Figure(
+                "Conductance over pressure",
+                "Conductance between punch and floor over the pressure on the punch, at the ends of the phases.",
+                conductance,
             ),
         ),
         strict=True,

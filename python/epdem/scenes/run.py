@@ -21,7 +21,7 @@ from .judge.summary import SceneOutcome
 from .judge.warnings import lost_spheres, measured_warnings, passed_walls, planned_warnings
 from .plan.plan import Resumed, SceneEngine, ScenePlan, plan
 from .plan.timestep import leading_impact
-from .tables import results, stages
+from .tables import network, results, stages
 
 Progress = Callable[[int, int], None]  # (step, steps of the run)
 
@@ -181,6 +181,8 @@ def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
                 f"{folder}: no frame holds a sphere; all have left the room, see the engine's output there"
             )
         tables["energy_balance"] = energy_balance(p, tables)
+    if p.potentials:
+        tables["currents"] = network.currents(p, tables)
     if p.scene.stages:
         tables["rows"] = stages.with_densities(p, tables)
         tables["stages"] = stages.table(p, tables)

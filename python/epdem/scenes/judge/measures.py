@@ -19,7 +19,7 @@ LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out
 # names of key figures: from frames, by their check; of a press
 FRAME_FIGURES = {"mass_flow": MassFlow, "rebound_speed": ReboundSpeed}
-PRESS_FIGURES = ("punch_force", "densification", "heckel", "kawakita", "springback", "side_pressure")
+PRESS_FIGURES = ("punch_force", "densification", "heckel", "kawakita", "springback", "side_pressure", "conductance")
 SURFACE = 0.95  # of the mass of a bed, nearest to its middle: beyond it single spheres have rolled away
 
 

@@ -91,10 +91,28 @@ def refuse_walls_at_faces(s: Parts, triangles: dict[str, FloatArray]) -> None:
             )
 
 
+def refuse_currents(case: SceneCase, s: Parts) -> None:
+    """Raise CaseError for potentials that give no current."""
+    walls = {w.name: w for w in s.wall if w.potential is not None}
+    if not walls:
+        return
+    name = next(iter(walls))
+    if len({w.potential for w in walls.values()}) < 2:
+        raise CaseError(
+            f"scene.wall.{name}.potential: no other wall has another potential, so no current flows; give one"
+        )
+    if not (case.output.contacts or case.output.energy):
+        raise CaseError(f"scene.wall.{name}.potential: currents follow from the contacts; give output.contacts")
+    for material in dict.fromkeys([*(x.material for x in s.filled), *(w.material for w in walls.values())]):
+        if case.materials[material].electrical_conductivity is None:
+            raise CaseError(f"materials.{material}.electrical_conductivity is missing: wall {name} has a potential")
+
+
 def refuse_combinations(case: SceneCase, s: Parts) -> None:
     """Raise CaseError for parts that exclude each other."""
     if case.measured and not s.stages:
         raise CaseError("measured: relative densities under pressure belong to a press; remove it, or take kind press")
+    refuse_currents(case, s)
     gates = {w.name for w in s.gates}
     for phase in s.phase:
         if phase.until and phase.until.force is not None and phase.until.wall in gates:

@@ -277,6 +277,11 @@ class ScenePlan:
         return tuple(w.name for w in self.scene.wall if w.name in {*self.loads, *named})
 
     @property
+    def potentials(self) -> dict[str, float]:
+        """Potentials [V] of walls that have one."""
+        return {w.name: w.potential for w in self.scene.wall if w.potential is not None}
+
+    @property
     def heat_flows(self) -> dict[int, str]:
         """The walls into which the rows have a heat flow, by their numbers among the walls with a temperature."""
         walls = enumerate(self.heat.walls if self.heat else (), 1)

@@ -29,6 +29,7 @@ UNITS = quantities.UNITS | {  # of the columns that have one
         "s": "begin_time end_time",
         "m": "overlap added_overlap grown_overlap contact_radius delta_max residual_overlap dent_radius wear height",
         "m^2": "area",
+        "S": "conductance",
         "m/s": "speed",
         "N": "force force_x force_y force_z",
         "Pa": "body_pressure normal_stress shear_stress pressure asked reached peak opposite_pressure radial_pressure",

@@ -103,6 +103,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
         axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
         found["radial_over_axial"] = found["radial_pressure"] / axial.where(axial > 0.0)
     found["work"] = np.interp(ends, tables["rows"]["step"], work_of_walls(p, tables["rows"]))
+    if "currents" in tables:
+        found["conductance"] = tables["currents"].set_index("step")["conductance"].reindex(ends).to_numpy()
     if "energy_balance" in tables:
         energies = tables["energy_balance"].set_index("step")
         for name in ("plastic", "elastic"):
