@@ -2,18 +2,21 @@
 #include "fix_history.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <unordered_map>
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "kernels/gather.hpp"
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
+#include "neighbor.h"
 #include "utils.h"
 
 namespace epdem::lammps {
@@ -225,6 +228,31 @@ void FixHistory::post_run() {
   page_holds_ = false;
 }
 
+/// Whether no atom moves farther than half of the skin from its place in the step of the lists.
+bool FixHistory::narrows() const {
+  return layout_.gap.growth >= 0 && neighbor->dist_check && neighbor->every == 1 && neighbor->delay == 0 &&
+         !neighbor->build_once && !domain->box_change;
+}
+
+/// With compaction, pairs that cannot meet before the next lists are left out, until an atom grows more.
+void FixHistory::post_neighbor() {
+  listed_factor_ = narrows() ? touch_factor(largest_ + 0.02) : HUGE_VAL;
+  distribute();
+}
+
+/// The growth of a restart is not known yet.
+void FixHistory::setup_post_neighbor() {
+  listed_factor_ = HUGE_VAL;
+  distribute();
+}
+
+void FixHistory::widen() {
+  if (factor() <= listed_factor_) return;
+  listed_factor_ = HUGE_VAL;
+  collect();
+  distribute();
+}
+
 /// From the atoms to a new list.
 void FixHistory::distribute() {
   read_list();
@@ -247,13 +275,22 @@ void FixHistory::distribute() {
 void FixHistory::read_list() {
   const NeighList& list = **list_;
   const bool excludes = atom->molecular != Atom::ATOMIC;
+  const double reach = std::sqrt(listed_factor_), *const radius = atom->radius;
+  const auto is_far = [&](int i, int j) {
+    const double *const xi = atom->x[i], *const xj = atom->x[j];
+    const double most = reach * (radius[i] + radius[j]) + neighbor->skin;
+    const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
+    return dx * dx + dy * dy + dz * dz > most * most;
+  };
   pairs_.clear(atom->nmax);
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii];
     pairs_.begin(i);
     for (int jj = 0; jj < list.numneigh[i]; ++jj) {
       const int j = list.firstneigh[i][jj];
-      if (!excludes || force->special_lj[(j >> SBBITS) & 3] != 0.0) pairs_.add(i, j & NEIGHMASK);
+      if (excludes && force->special_lj[(j >> SBBITS) & 3] == 0.0) continue;
+      if (listed_factor_ < HUGE_VAL && is_far(i, j & NEIGHMASK)) continue;
+      pairs_.add(i, j & NEIGHMASK);
     }
   }
   pairs_.close();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,8 @@ class FixHistory : public LAMMPS_NS::Fix {
   const double* bodies() const { return bodies_.data(); }
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
   double factor() const { return touch_factor(largest_); }
+  /// Before the pairs: all of the list again where spheres grew more than its pairs allow.
+  void widen();
   /// Adds the dents of a block to the sums of the atoms of this rank.
   void note_dents(const kernels::Block& b, int n, bool wall);
 
@@ -90,8 +93,8 @@ class FixHistory : public LAMMPS_NS::Fix {
   int pack_forward_comm(int n, int* atoms, double* buffer, int, int*) override;
   void unpack_forward_comm(int n, int first, double* buffer) override;
   int setmask() override;
-  void setup_post_neighbor() override { distribute(); }
-  void post_neighbor() override { distribute(); }
+  void setup_post_neighbor() override;
+  void post_neighbor() override;
   void pre_exchange() override { collect(); }
   void post_run() override;
 
@@ -111,6 +114,7 @@ class FixHistory : public LAMMPS_NS::Fix {
  private:
   void collect();
   void distribute();
+  bool narrows() const;
   void read_list();
   void rename_partners();
   int stride() const { return layout_.values + 1; }
@@ -127,6 +131,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> dents_;   // with compaction, by atom: sums of the dents
   std::vector<double> bodies_;  // BodySums, also of ghosts
   double largest_ = 0.0;        // growth
+  double listed_factor_ = HUGE_VAL;  // up to which pairs_ holds all pairs that meet
   bool page_holds_ = false;     // else the atoms hold the histories
   int rows_ = 0;                // of array_atom
   int stored_most_ = 0;         // numbers of the contacts of an atom in a restart file, of all ranks

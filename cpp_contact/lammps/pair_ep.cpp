@@ -223,7 +223,10 @@ void PairEp::compute(int eflag, int vflag) {
   pass_.work = energies_ && counts;
   if (pass_.work) history_->open_energies(atom->nlocal);
   if (heat_) heat_->open();
-  if (models_.compaction) history_->close_growth(counts);
+  if (models_.compaction) {
+    history_->close_growth(counts);
+    if (counts) history_->widen();
+  }
   if (list->inum > 0) {
     std::vector<double> before;
     if (!counts) before = history_->page();

@@ -121,7 +121,7 @@ struct Growing {
 /// What follows from the sums of a body in a step; pressure: its largest so far, which a body without contacts forgets.
 inline BodySums<double> sums_of_step(const double* sums, double pressure) noexcept {
   const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
-  return {growth(sums[0], sums[1]), sums[2], touches ? std::fmax(pressure, sums[3]) : 0.0};
+  return {growth(sums[0], sums[1]), sums[2], touches ? max(pressure, sums[3]) : 0.0};
 }
 
 /// The sums of one body, from the array in which a host stores the sums of all bodies; null: without compaction.
@@ -205,9 +205,11 @@ EPDEM_INLINE T body_pressure(const Growing<wall, T>& c) noexcept {
 }
 
 /// The backbone at the overlap b where growth has added `grown` to it; valid where b is above the elastic overlap.
+/// whole: the force that the law alone has at b.
 template <class Law, class T = Number<Law>>
-EPDEM_INLINE Point<T> grown_point(const Law& law, T R_star, T b, T grown, T pressure) noexcept {
+EPDEM_INLINE Point<T> grown_point(const Law& law, T R_star, T b, T grown, T pressure, T& whole) noexcept {
   Point<T> p = law.load(R_star, b);
+  whole = p.force;
   const auto grows = grown > 0.0;
   if (!any(grows)) return p;
   const T alone = b - grown;
@@ -285,6 +287,7 @@ struct GrownStep {
   Number<Law> reached;                   // largest overlap without growth before the step [m]
   Number<Law> delta_max;                 // the same after the step
   Number<Law> softness;                  // G
+  Number<Law> whole;                     // force of the law alone at a peak that this step reaches [N]
   GrowthState<Number<Law>> last, state;  // before and after the step
 };
 
@@ -324,7 +327,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
     return falls & known & (v.extrapolated == last.added) & (v.grown == last.grown) & (pressure == last.pressure);
   };
   const auto load = [&](T b) __attribute__((always_inline)) {
-    return detail::grown_point(law, R_star, b, v.grown, pressure);
+    return detail::grown_point(law, R_star, b, v.grown, pressure, s.whole);
   };
   s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap, kept, load);
 
@@ -402,7 +405,7 @@ template <class Law, class T = Number<Law>>
     T alone0 = F0, alone = peak.force;
     const auto grew = yields & was_dented & (s.last.grown > 0.0), grows = yields & (s.state.grown > 0.0);
     if (any(grew)) alone0 = select(grew, law.load(R_star, only(grew, from)).force, F0);
-    if (any(grows)) alone = select(grows, law.load(R_star, to).force, peak.force);
+    if (any(grows)) alone = select(grows, s.whole, peak.force);
     const T of_growth = 0.5 * (to - from) * ((F0 - alone0) + (peak.force - alone));
     const T work = law.work(R_star, from, to, alone0, alone) + of_growth + U0 - U;
     const T paid = 0.5 * (F0 + peak.force) * (v - v0);
