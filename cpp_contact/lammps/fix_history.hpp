@@ -128,13 +128,13 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> identity_;    // of the models whose histories these are: their ids, numbers of a contact
   double evaluations_ = 0.0;
   double strain_[2] = {};
-  std::vector<double> dents_;   // with compaction, by atom: sums of the dents
-  std::vector<double> bodies_;  // BodySums, also of ghosts
-  double largest_ = 0.0;        // growth
+  std::vector<double> dents_;        // with compaction, by atom: sums of the dents
+  std::vector<double> bodies_;       // BodySums, also of ghosts
+  double largest_ = 0.0;             // growth
   double listed_factor_ = HUGE_VAL;  // up to which pairs_ holds all pairs that meet
-  bool page_holds_ = false;     // else the atoms hold the histories
-  int rows_ = 0;                // of array_atom
-  int stored_most_ = 0;         // numbers of the contacts of an atom in a restart file, of all ranks
+  bool page_holds_ = false;          // else the atoms hold the histories
+  int rows_ = 0;                     // of array_atom
+  int stored_most_ = 0;              // numbers of the contacts of an atom in a restart file, of all ranks
   kernels::PairList pairs_;
   std::vector<double> page_;               // by place of the pair
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
