@@ -2,6 +2,8 @@
 """Bulk scenes in LAMMPS: the way of the spheres in LIGGGHTS, the energy that moving walls bring, what is refused."""
 
 import itertools
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from epdem.engines.lammps import deck as lammps_scene
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.columns import last_frame
+from marks import thorough
 
 
 def plane(name, axis, at):
@@ -259,6 +262,32 @@ def test_a_sphere_crosses_edges_with_friction_as_in_liggghts(kind, tmp_path):
     for name in ("vx", "vy", "vz", "omega_x", "omega_y"):
         largest = np.abs(theirs[name]).max()
         assert largest > 0 and np.abs(ours[name] - theirs[name]).max() <= 1e-9 * largest, name
+
+
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize("name", [thorough("hopper_stl"), thorough("screw")])
+def test_cases_with_an_stl_wall_run_in_both_hosts(name, tmp_path):
+    """Mean discharge of the hopper, and mean torque and force of the screw, from the same lines."""
+    means = []
+    for engine in ("lammps", "liggghts"):
+        found = run(CASES / f"{name}.toml", engine=engine, out=tmp_path / engine)
+        assert found.passed, found.results.checks
+        rows, measures = found.results.rows, found.results.measures
+        if name == "screw":
+            late = rows["time"] > 0.3
+            means.append([rows[f"screw_{what}_z"][late].mean() for what in ("torque", "force")])
+        else:
+            late = (measures["time"] > 0.25) & (measures["time"] < 0.6)
+            means.append([np.polyfit(measures["time"][late], measures["poured"][late], 1)[0]])
+    assert np.abs(means[1]).min() > 0
+    assert means[0] == pytest.approx(means[1], rel=0.03 if name == "hopper_stl" else 0.15)
+
+
+def test_the_meshes_of_the_cases_are_those_of_their_script(tmp_path):
+    subprocess.run([sys.executable, CASES / "parts/meshes.py", tmp_path], check=True)
+    for name in ("hopper.stl", "screw.stl"):
+        assert (tmp_path / name).read_bytes() == (CASES / "parts" / name).read_bytes()
 
 
 def turned(axis):
