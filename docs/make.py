@@ -34,6 +34,7 @@ FIGURES = {  # the command, and where the figure is then
     "laws.png": (".venv/bin/python docs/laws.py", "docs/figures/laws.png"),
     "cost.png": (".venv/bin/python docs/cost.py", "docs/figures/cost.png"),
     "stability.png": (".venv/bin/python docs/stability.py", "docs/figures/stability.png"),
+    "stability_map.png": (".venv/bin/python docs/stability.py", "docs/figures/stability_map.png"),
     "validate.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/validate.png"),
     "impact_25k.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/impact_25k.png"),
     "impact_25k_lowest.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/impact_25k_lowest.png"),

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import re
 from dataclasses import replace
 from functools import partial
 
@@ -277,7 +278,7 @@ def test_the_page_of_the_documentation_names_its_command_and_every_case(monkeypa
     outcome = stability.run(["embedded"], ["thornton"])
     found = page.tables(outcome)
     assert {e.name for e in extremes() if e.adhesion is None} == set(found["stability"]["case"])
-    text = page.document(found)
+    text = page.document(found, page.load(page.MAP))
     assert "`.venv/bin/python docs/stability.py`" in text
     assert all(f"| {e.group} |" in text for e in extremes() if e.adhesion is None)
     assert outcome.passed and json.dumps(outcome.verdicts.to_dict("list"))
@@ -288,7 +289,7 @@ def test_the_page_has_the_numbers_of_its_tables():
     with (page.DOCS / "data/stability.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     text = (page.DOCS / "stability.md").read_text()
-    assert text == page.document({key: page.load(key) for key in page.NAMES})
+    assert text == page.document({key: page.load(key) for key in page.NAMES}, page.load(page.MAP))
     for name in ("embedded", "liggghts", "yade"):
         own = [r for r in rows if r["engine"] == name and r["group"] != "adhesion"]
         passed = sum(r["status"] == "passed" for r in own)
@@ -296,6 +297,30 @@ def test_the_page_has_the_numbers_of_its_tables():
         assert f"| without adhesion | {name} | {passed} | 0 | {absent} |" in text
     limits = [float(r["breaks_at"]) for r in rows if r["breaks_at"]]
     assert f"from {min(limits):g} on an impact" in text.replace("\n", " ")
+
+
+def test_the_map_over_steps_has_the_numbers_of_its_table():
+    """Maxima by loops over the lines of docs/data/stability_map.csv."""
+    with (page.DOCS / f"data/{page.MAP}.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    (table,) = re.findall(r"\| engine \| 5 \|.*?\n\n", (page.DOCS / "stability.md").read_text(), re.S)
+    shown = {line.split("|")[1].strip(): line.split("|")[2:-1] for line in table.strip().splitlines()[2:]}
+    assert set(shown) == {row["engine"] for row in rows} == {"embedded", "liggghts", "lammps", "yade"}
+    for name, cells in shown.items():
+        for steps, cell in zip(page.STEPS, cells, strict=False):
+            own = [r for r in rows if r["engine"] == name and r["steps"] and float(r["steps"]) == steps]
+            assert float(cell) == pytest.approx(max(0.0, *(float(r["created"]) for r in own)), rel=0.01)
+        assert int(cells[len(page.STEPS)]) == sum(r["engine"] == name and r["status"] == "diverges" for r in rows) == 0
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_impacts_of_the_map_are_passive_from_fifty_steps_on_and_gains_of_energy_are_seen(law, tmp_path, monkeypatch):
+    """Velocity Verlet: the energy gained falls with the square of the steps."""
+    created = {r["steps"]: r["created"] for r in page.passivity("embedded", law, tmp_path, {"ratio": 1e2}, None)}
+    assert created[5] < 0.2 and created[50] < 1e-3 and created[400] < 1e-5
+    monkeypatch.setattr(page, "find_engine", lambda name: Springy())
+    *_, last = page.passivity("embedded", law, tmp_path, {"ratio": 1e2}, None)
+    assert last["created"] > 1e-4
 
 
 def test_the_command_names_the_groups_there_are(tmp_path, monkeypatch):
