@@ -13,6 +13,7 @@ from epdem.engines.yade import deck as yade_scene
 from epdem.errors import CaseError
 from epdem.jobs.engine import check
 from epdem.jobs.stage import write_deck
+from epdem.scenes.judge.warnings import planned_warnings
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.columns import last_frame
 
@@ -144,3 +145,10 @@ def test_a_scene_without_temperatures_has_no_word_of_heat():
     assert decks[0] == decks[1] and "heat" not in decks[0]["in.scene"]
     with_heat = scene_engine("lammps").files(plan(parse(warm())))["in.scene"]
     assert "heat/ep 0.9 1.0 800.0 50.0 500.0 wall wall_floor 350.0 50.0" in with_heat
+
+
+def test_losses_that_heat_nothing_are_named():
+    data = warm()
+    for friction, named in (({"friction": 0.3}, True), ({"friction": 0.3, "tangential": "partial_slip"}, False)):
+        data["contact"] = friction
+        assert any("heat nothing" in w for w in planned_warnings(plan(parse(data)))) == named

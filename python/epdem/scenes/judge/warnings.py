@@ -41,7 +41,7 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    found = _law(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
+    found = _law(p) + _cold_losses(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
     return (
         found
         + _slower(p)
@@ -59,6 +59,16 @@ def _law(p: ScenePlan) -> list[str]:
     return [
         f"law.name = {p.model.law!r}: the pressures of a bed that is pressed with this law are not those of finite "
         "elements (docs/press.md); take law.name = 'cavity' with finite_strain = true and compaction = true"
+    ]
+
+
+def _cold_losses(p: ScenePlan) -> list[str]:
+    """Losses of a scene with heat that do not become heat, because no table books them."""
+    if not (p.heat and p.heat.share and p.model.loses_energy):
+        return []
+    return [
+        "friction of one spring, rolling friction and dashpots heat nothing, because no history holds their work: "
+        "temperatures are too low by it; contact.tangential = 'partial_slip' books the work of friction"
     ]
 
 
