@@ -2,16 +2,19 @@
 """A phase ends at the height or density of a bed, and at an energy or number of spheres between two rows."""
 
 import math
+from importlib import import_module
 
+import pandas as pd
 import pytest
 from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from scene_runs import restart_steps, run, write_case
 from test_ends_of_phases import BOX, DOWN, ENGINES, LID
 from test_press import COUNT, HEIGHT, RADIUS, SIDE, evaluated, plate, press, without
 
 from epdem.case.scene import parse
-from epdem.engines import scene_engine
+from epdem.engines import log, scene_engine
 from epdem.errors import CaseError
+from epdem.jobs.stage import write_deck
 from epdem.scenes.judge import summary
 from epdem.scenes.plan.plan import plan
 
@@ -81,6 +84,28 @@ def test_the_force_is_looked_at_from_a_density_on_that_can_bear_it(engine):
     assert HEIGHT - 0.2e-3 - way == pytest.approx(SOLID / 0.4, rel=1e-9)
     data |= {"contact": {"cohesion": "1e3 J/m^3"}, "law": {"name": "cavity"}}
     assert "variable loose" not in "\n".join(scene_engine(engine).files(plan(parse(data))).values())
+
+
+@pytest.mark.parametrize("engine", DECKS)
+def test_a_press_that_stops_on_its_way_to_a_density_goes_on_to_the_same_tables(engine, tmp_path):
+    """Between two looks the run is one, and a restart file stands at none of the rows that end a phase."""
+    data = to_bed(densities=[0.75])
+    data["output"] |= {"rows": 400, "restarts": 130, "loads": True}
+    tool, p = scene_engine(engine), plan(parse(data))
+    host = {x: import_module(f"epdem.engines.{engine}.{x}") for x in ("launcher", "resume", "tables")}
+    write_deck(tool, p, tmp_path)
+    host["launcher"].run("in.scene", tmp_path)
+    out = tmp_path / host["launcher"].OUT
+    held, ends = log.held(out), log.ends(out)
+    ended = p.with_ends(ends, held=held)
+    whole = host["tables"].rows(ended, out)
+    steps = [step for step in restart_steps(tmp_path) if step < held["stage1"][0]]
+    assert len(steps) > 5
+    for step in steps[1::4]:
+        host["resume"].write_resume(p, tmp_path, step)
+        host["launcher"].run("in.resume", tmp_path, append=True)
+        assert repr((log.held(out), log.ends(out))) == repr((held, ends))  # NaN is a NaN
+        pd.testing.assert_frame_equal(host["tables"].rows(ended, out), whole, check_exact=True)
 
 
 def lid(**until):

@@ -437,7 +437,7 @@ def test_a_fast_press_and_spheres_behind_the_punch_are_told():
     both = stages.inertial_numbers(plan(parse(data)), tables["stages"])
     assert both.to_list() == pytest.approx([math.sqrt(2.0) * number], rel=1e-12)
     near = press_warnings(p, tables | {"stages": tables["stages"].assign(error=0.006, relative_density=0.91)})
-    assert near[0].startswith("phase stage2: 40 MPa, +0.60% beside the 40 MPa asked for; press slower")
+    assert near[0].startswith("phase stage2: 40.24 MPa, +0.60% beside the 40 MPa asked for; press slower")
     assert near[1].startswith("phase stage2: the relative density is 0.91, and above 0.9 no contact law")
     slow = replace(p, phases=tuple(p.phases[:1]))
     assert press_warnings(slow, {"stages": tables["stages"].assign(phase="release1")}) == []
@@ -573,6 +573,20 @@ def test_a_stage_that_a_bed_without_void_ends_has_its_last_pressure_and_fails():
     assert not checks.checks(p, tables).set_index("key")["passed"]["stage_pressure"]
     (said,) = [x for x in press_warnings(p, tables) if "asked for" in x]
     assert said == "phase stage1: 6 MPa, -40.00% beside the 10 MPa asked for"
+
+
+@pytest.mark.parametrize("engine", [ENGINES[0], ENGINES[2]])
+def test_a_stage_that_is_passed_before_the_force_is_looked_at_fails(engine, tmp_path):
+    """Four spheres bear the punch at a relative density of 0.08, and the force is looked at from 0.4 on."""
+    data = without(press(stages=["1 MPa"], count=4, speed="1 m/s"), "hold")
+    data["output"]["energy"] = False
+    data["output"]["color"] = "speed"
+    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    found = outcome.results.stages.set_index("phase").loc["stage1"]
+    rows = outcome.results.rows
+    assert found["peak"] >= rows["pressure"].max() > 2e6 and found["error"] == pytest.approx(found["peak"] / 1e6 - 1.0)
+    assert not outcome.passed
+    assert [x for x in outcome.warnings if x.startswith("phase stage1: ") and "beside the 1 MPa asked for" in x]
 
 
 def test_the_time_step_of_a_press_does_not_follow_the_rows():

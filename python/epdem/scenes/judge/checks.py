@@ -30,7 +30,7 @@ CHECKS = {  # the unit of value and expected; what passes
     "torque_of_the_bed": Column("N m", "the torque on the drum is the weight of the bed times its arm"),
     "force_on_all_walls": Column("N", "the force on all walls is the weight of the spheres"),
     "void": Column("", "number of pressed beds that lost all void, which ended the run"),
-    "stage_pressure": Column("Pa", "each stage reaches its pressure (here the one farthest from it)"),
+    "stage_pressure": Column("Pa", "each stage reaches its pressure and keeps it (here the one farthest from it)"),
     "density": Column("", "largest relative density, which stays below 1"),
     "energy_residual": Column("", "the energy balance closes: no term is a remainder"),
     "energy_gained": Column("", "friction, the rest of the energy balance, is not negative"),
@@ -257,7 +257,9 @@ def _of_stages(stages: pd.DataFrame) -> list[Row]:
     rows, asked = [], stages[stages["asked"].notna()]
     if not asked.empty:
         worst = asked.loc[asked["error"].abs().idxmax()]
-        rows.append(_row("stage_pressure", float(worst["reached"]), float(worst["asked"]), STAGE))
+        rows.append(
+            _row("stage_pressure", float(worst["asked"] * (1.0 + worst["error"])), float(worst["asked"]), STAGE)
+        )
     if not stages.empty:
         densest = float(stages["relative_density"].max())
         rows.append(_below("density", densest, 1.0) | {"passed": densest < 1.0})

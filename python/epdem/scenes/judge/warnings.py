@@ -287,7 +287,7 @@ def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
     table, found = tables["stages"], []
     numbers = inertial_numbers(p, loaded(p, table))
     found += [
-        f"phase {row['phase']}: {in_words(row['reached'], 'Pa')}, {row['error']:+.2%} beside the "
+        f"phase {row['phase']}: {in_words(row['asked'] * (1 + row['error']), 'Pa')}, {row['error']:+.2%} beside the "
         f"{in_words(row['asked'], 'Pa')} asked for" + "; press slower near it" * (row["error"] > 0.0)
         for row in table[table["error"].abs() > NEAR].to_dict("records")
     ]
