@@ -350,6 +350,7 @@ THROUGH_FACES = {"room": "periodic", "bodies": "table", "measure": "porosity", "
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
 @example(chosen=PLAIN | {"amount": "thrown later", "phases": "until rest"}, ranks=1)
 @example(chosen=PLAIN | RUBBED, ranks=2)
+@example(chosen=PLAIN | {"mixture": "log-normal", "bodies": "bodies that overlap", "numerics": "ranks"}, ranks=2)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))

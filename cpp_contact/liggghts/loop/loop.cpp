@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "atom_vec.h"
 #include "force.h"
 #include "kernels/gather.hpp"
 #include "modify.h"
@@ -24,12 +25,16 @@ bool generic_loop(LAMMPS_NS::LAMMPS* lmp) {
   return true;
 }
 
+constexpr int ROOM = 10000;  // spheres, as LIGGGHTS's own steps of growth
+
 LoopState& state_of(LAMMPS_NS::LAMMPS* lmp) {
   auto& loops = Simulation::of(lmp).loops;
   if (loops) return *loops;
   std::string refusal;
   const Kernels* const kernels = chosen_kernels(refusal);
   if (!kernels) lmp->error->all(FLERR, refusal.c_str());
+  // The second fix insert of a step reads spheres past the end of arrays that read_data made as long as needed.
+  if (LAMMPS_NS::Atom* const atom = lmp->atom; atom->nmax > 0 && atom->nmax < ROOM) atom->avec->grow(ROOM);
   loops = std::make_shared<LoopState>(LoopState{generic_loop(lmp), *kernels});
   return *loops;
 }
