@@ -125,6 +125,20 @@ thermo_modify format float %.17g
 """
 
 
+@pytest.mark.parametrize("law", [("cavity 1e8 0.3", "7e5", "4e5"), ("thornton_ning 1e8 0.3", "5 2e6", "3 1e6")])
+def test_round_off_in_positions_between_two_runs_changes_no_force_of_new_types(law, tmp_path):
+    """A contact that grows is at its largest overlap then; below, it keeps the force of its former types."""
+    words, *strengths = law
+    pairs = [f"{k} {k} {words} {strength} tangential history 0.3" for k, strength in enumerate(strengths, 1)]
+    deck = bed(pairs, types=2) + "run 100\n"
+    new = "set group all type 2\nrun 1\n" + DUMP
+    _, rows = run(deck + new, tmp_path / "as it is")
+    for seed in (1, 2):
+        moves = f"displace_atoms all random 1e-17 1e-17 1e-17 {seed} units box\n"
+        _, moved = run(deck + moves + new, tmp_path / f"moved{seed}")
+        assert np.abs(rows - moved)[:, 4:].max() < 1e-9 * np.abs(rows[:, 4:]).max()
+
+
 def test_a_restart_file_holds_all_contacts_of_the_rank_that_has_more(tmp_path):
     """Seven spheres pressed together on the second rank, two on the first."""
     cross = 0.0195 * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) + [0.05, 0, 0]

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from drawn_decks import ONE_BY_ONE, Deck, difference, merge, read_features, run, spheres
-from hypothesis import assume, given, note
+from hypothesis import assume, example, given, note
 from hypothesis import strategies as st
 
 from epdem.engines.lammps import launcher
@@ -131,6 +131,7 @@ def test_hertz_has_the_motion_of_the_own_model_of_lammps(seed, tmp_path_factory)
 
 @ONE_BY_ONE
 @given(seed=st.integers(0, 10**9))
+@example(seed=1457)  # new types of contacts at their largest overlap, and positions that `balance` rounds anew
 def test_other_lists_ranks_and_numbers_change_no_motion(seed, tmp_path_factory):
     """New numbers follow the places between the runs; velocities and spins are alike, whichever their numbers."""
     names, at, words, half, data = draw(seed)

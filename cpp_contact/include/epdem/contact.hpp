@@ -120,7 +120,11 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   NormalContact<Law> now{};
   now.overlap = overlap;
   [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth
-  if constexpr (Law::yields) reached = before.delta_max;
+  if constexpr (Law::yields) {
+    reached = before.delta_max;
+    // a host rounds positions anew between two steps; what the last step left at its largest overlap is still there
+    if (repeats) overlap = select(fabs(overlap - reached) < 1e-9 * fabs(reached), reached, overlap);
+  }
   if constexpr (std::is_same_v<std::decay_t<Growth>, NoGrowth>) {
     (void)growth;
     now.step = step(law, R_star, before, overlap, closing);

@@ -51,7 +51,7 @@ inline Number<Law> damped_force(const Law& law, Number<Law> R_star, Number<Law> 
     (void)repeats;
     return damped;
   } else {
-    const auto grows = repeats ? (1.0 + 1e-9) * overlap > reached : now.after.delta_max > reached;
+    const auto grows = repeats ? overlap >= reached : now.after.delta_max > reached;
     return select(grows & has_yielded(law, R_star, now.after), now.force, damped);
   }
 }
