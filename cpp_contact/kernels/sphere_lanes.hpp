@@ -176,6 +176,7 @@ int next_pairs(PairSearch& s, int* i, int* j, int* place) {
       const Mask apart = !(rsq < sum * sum);
       place_of ^= __builtin_convertvector(apart, Places);
       if (s.sums && any(meet & apart)) {
+        static_assert(offsetof(BodySums<double>, growth) == 0);
         Lanes growth_i, growth_j;
         for (int l = 0; l < lane_count; ++l) growth_i[l] = s.sums[body_values * long(of[l])];
         for (int l = 0; l < lane_count; ++l) growth_j[l] = s.sums[body_values * long(with[l])];

@@ -65,6 +65,7 @@ struct Triangle {
 
   static constexpr double rounding = 1e-6;       // of the distance: within it, triangles meet
   static constexpr double one_direction = 1e-6;  // 1 - cosine between contacts that are one: 0.08 degrees
+  static constexpr double shallow = 0.06;        // the same at a concave fold, where faces meet: 20 degrees
 };
 
 struct TriangleContact {
@@ -75,8 +76,9 @@ struct TriangleContact {
 
 /// The contacts of a sphere at x, from the nearest on, among the nearest points of all triangles in reach, which are
 /// sorted. A point of a triangle is in contact unless a nearer triangle holds it: over a face, an edge or a corner a
-/// sphere has one contact, in a concave corner one with each face. Triangles in one plane act as one, orientation has
-/// no effect, and a triangle that occurs twice acts once.
+/// sphere has one contact, in a concave corner one with each face, in a shallow fold, as of round walls, one with the
+/// nearest: the second would begin with a force. Triangles in one plane act as one, orientation has no effect, and a
+/// triangle that occurs twice acts once.
 template <class TriangleOf>
 void find_contacts(const Vec<double>& x, std::vector<TriangleContact>& reached, TriangleOf triangle_of,
                    std::vector<TriangleContact>& found) {
@@ -87,7 +89,10 @@ void find_contacts(const Vec<double>& x, std::vector<TriangleContact>& reached, 
   for (std::size_t k = 0; k < reached.size(); ++k) {
     const TriangleContact& c = reached[k];
     const auto has_direction_of = [&](const TriangleContact& nearer) {
-      return dot(c.from_wall, nearer.from_wall) > (1.0 - Triangle::one_direction) * c.distance * nearer.distance;
+      const double along = dot(c.from_wall, nearer.from_wall), lengths = c.distance * nearer.distance;
+      return along > (1.0 - Triangle::one_direction) * lengths ||
+             (along > (1.0 - Triangle::shallow) * lengths &&
+              triangle_of(c.triangle).meets(triangle_of(nearer.triangle), c.distance));
     };
     const Vec<double> at = x - c.from_wall;
     const auto holds_point = [&](const TriangleContact& nearer) {

@@ -154,10 +154,10 @@ def test_beside_an_edge_a_sphere_touches_the_face_alone(tmp_path):
     assert np.abs(mesh[:, 4:7] - plane[:, 4:7]).max() <= 1e-6 * plane[0, 6]
 
 
-@pytest.mark.parametrize(("speed", "conserves"), [(0.05, True), (1.0, False)])
-def test_a_concave_fold_conserves_energy_while_overlaps_are_small(speed, conserves, tmp_path):
-    """Elastic spheres that hit beside a fold of 7.5 degrees, obliquely: overlaps below and above R (1 - cos(fold))."""
-    angle = np.radians(7.5)
+@pytest.mark.parametrize(("degrees", "speed"), [(7.5, 0.05), (7.5, 1.0), (15, 1.0), (30, 1.0)])
+def test_a_concave_fold_conserves_energy(degrees, speed, tmp_path):
+    """Elastic spheres that hit beside a fold, obliquely: one contact up to 20 degrees, two above."""
+    angle = np.radians(degrees)
     (tmp_path / "fold.stl").write_text(stl_text("fold", np.array(fold(angle, -0.5, 0.5))))
     law = "hertz 1e8 0.3"
     starts = [(x, 0.03 * (k - 9.5)) for k, x in enumerate(np.linspace(-0.25, 0.05, 20).tolist())]
@@ -165,11 +165,11 @@ def test_a_concave_fold_conserves_energy_while_overlaps_are_small(speed, conserv
     head = spheres(*((x * R, y, z * R) for (x, y), z in zip(starts, heights, strict=True)), pair=law)
     head = head.replace("-0.1 0.1 -0.1 0.1 -0.1 0.1", "-0.5 0.5 -0.5 0.5 -0.5 0.5")
     duration = 0.012 / speed**0.2
-    walk = f"velocity all set {speed / 2} 0 {-speed}\nfix motion all nve/sphere\ntimestep {duration / 10000}\n"
-    _, rows = run(f"{head}fix w all wall/ep mesh fold.stl {law}\n{walk}run 10000\n{DUMP}", tmp_path)
+    walk = f"velocity all set {speed / 2} 0 {-speed}\nfix motion all nve/sphere\ntimestep {duration / 40000}\n"
+    _, rows = run(f"{head}fix w all wall/ep mesh fold.stl {law}\n{walk}run 40000\n{DUMP}", tmp_path)
     assert (rows[:, 6] > 0).all()
     change = np.abs((rows[:, 4:7] ** 2).sum(axis=1) / (1.25 * speed**2) - 1).max()
-    assert change < 1e-4 if conserves else change > 0.2
+    assert change < 1e-4, change
 
 
 def test_a_corner_has_a_contact_with_each_of_its_faces(tmp_path):

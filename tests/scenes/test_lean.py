@@ -62,6 +62,9 @@ def small(data: dict) -> dict:
     """The TOML data of a scene with the numbers of SMALL, and a coarse time step: what the lines do, not how well."""
     few = {"output": data.get("output", {}) | {"rows": 20, "particles": 5}, "numerics": {"error": 0.1}}
     scene = data["scene"] | SMALL[data["scene"]["kind"]]
+    if "diameter" in scene and "box" in scene:  # a layer of larger spheres, in place of a round die
+        del scene["diameter"]
+        scene |= {"box": ["4 mm", "4 mm"], "height": "8 mm", "count": 60, "stages": ["20 MPa", "50 MPa"]}
     if "settle_time" in scene:  # finer spheres, which the plate of a wide box would not meet
         scene |= {"settle_time": "1 ms", "box": ["0.13 mm", "0.13 mm", "0.8 mm"], "count": 46, "height": "0.3 mm"}
     if "phase" in scene:

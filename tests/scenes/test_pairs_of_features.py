@@ -92,6 +92,8 @@ def tries(few, **more):
 PLAIN = {slot: next(iter(options)) for slot, options in SLOTS.items()}
 KINDS = "cases of kinds are drawn by tests/fuzz/test_inputs.py, their runs are those of parts"
 ALONE = "judges a bed that it is made for: test_scene_checks.py"
+HEAT, CURRENT = "in LAMMPS alone: test_heat_scene.py", "read from frames: test_currents.py"
+WALLS = ("Plane", "Plate", "Box", "Cylinder", "Cone", "Revolved", "Stl")
 NOT_DRAWN = {
     "Keys": KINDS,
     "Parts": {"key_figure": KINDS, "highest_fall": KINDS, "highest_drive": KINDS, "places": KINDS, "check": ALONE}
@@ -107,7 +109,13 @@ NOT_DRAWN = {
     "TorqueOfBed": ALONE,
     "SceneCase": {"measured": "numbers beside those of a press: test_press.py"},
     "MeasuredDensities": "numbers beside those of a press: test_press.py",
-    "LawMaterial": {"surface_energy": "gives the work of adhesion, which is drawn: tests/decks/test_adhesive_case.py"},
+    "LawMaterial": {"surface_energy": "gives the work of adhesion, which is drawn: tests/decks/test_adhesive_case.py"}
+    | dict.fromkeys(("thermal_conductivity", "specific_heat"), HEAT)
+    | {"electrical_conductivity": CURRENT},
+    "Contact": {"heat_share": HEAT},
+    "Row": {"heat_flow": HEAT},
+    **{part: {"temperature": HEAT} for part in ("Fill", "FileFill", "SingleSphere")},
+    **{f"{kind}Wall": {"temperature": HEAT, "potential": CURRENT} for kind in WALLS},
 }
 CHOOSES = ("kind", "model", "tangential")  # keys each value of which is a model of its own
 

@@ -40,7 +40,14 @@ ELSEWHERE = {  # the test that runs what a script computes
     "validation": "verification/test_claims.py",
     "yield_pressure": "physics/test_yield_pressure.py",
 }
-BY_HAND = {"adhesive_powder", "benchmarks", "compaction_cost", "liggghts_speed", "reliability"}  # CONTRIBUTING.md
+BY_HAND = {
+    "adhesive_powder",
+    "benchmarks",
+    "compaction_cost",
+    "lateral",
+    "liggghts_speed",
+    "reliability",
+}  # CONTRIBUTING.md
 
 
 def test_each_script_that_a_page_names_has_a_place_where_it_runs():

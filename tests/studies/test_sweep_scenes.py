@@ -14,11 +14,12 @@ import pytest
 
 from epdem import Scene
 from epdem import run as api_run
+from epdem.base.files import running
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import EngineError
 from epdem.report.sweeps import _by_key
 from epdem.scenes.tables import results
-from epdem.studies.sweep import folder, run, slurm
+from epdem.studies.sweep import folder, run
 
 pytestmark = pytest.mark.liggghts
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -173,7 +174,7 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    while slurm.running(out) and time.monotonic() < end:
+    while running(out) and time.monotonic() < end:
         time.sleep(0.01)
     assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["waiting"] == 1
     subprocess.check_call(command, stdout=subprocess.DEVNULL)

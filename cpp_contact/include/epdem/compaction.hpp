@@ -59,7 +59,6 @@ struct BodySums {
 };
 
 inline constexpr int body_values = sizeof(BodySums<double>) / sizeof(double);
-static_assert(offsetof(BodySums<double>, growth) == 0);
 
 /// Sums of a body: cover, volume, area and pressure.
 inline constexpr int dent_sums = 4;
