@@ -194,14 +194,14 @@ def main() -> None:
         for mark, name, density, along, host in cases:
             m, folder = MATERIALS[mark], Path(place) / f"{host}{mark}{name}{density}{along}"
             if (name, host) == ("die", "lammps"):
-                ours = measures(die_between_walls(folder, m, density))
+                of_spheres = measures(die_between_walls(folder, m, density))
             else:
-                ours = measures(lattice(folder, host, name, m, density, along))
+                of_spheres = measures(lattice(folder, host, name, m, density, along))
             if along == "all":
-                ours[2:4] = nothing[2:4]
-            theirs = known.get((name, m.E, m.nu, density, along), nothing)
+                of_spheres[2:4] = nothing[2:4]
+            of_elements = known.get((name, m.E, m.nu, density, along), nothing)
             key = f"{host},{name},{m.E:g},{m.nu:g},{density:.2f},{along}"
-            print(f"{key},{columns(ours)},{columns(theirs)}", flush=True)
+            print(f"{key},{columns(of_spheres)},{columns(of_elements)}", flush=True)
 
 
 if __name__ == "__main__":

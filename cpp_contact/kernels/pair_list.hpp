@@ -10,6 +10,13 @@
 
 namespace epdem::kernels {
 
+/// Whether two spheres cannot touch while their distance shrinks by at most `way` and the sum of their radii grows to
+/// at most `reach` times `radii`.
+inline bool is_far(const double* xi, const double* xj, double radii, double reach, double way) {
+  const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2], most = reach * radii + way;
+  return dx * dx + dy * dy + dz * dz > most * most;
+}
+
 /// Pairs in the order of the neighbor lists; the place of a pair is its number in this order.
 class PairList {
  public:

@@ -126,7 +126,8 @@ void FixHeat::add_wall(const kernels::Block& b, int n, const Models& models, con
   }
 }
 
-/// Explicit Euler: no temperature passes those of its neighbours while the step is below C/sum of the conductances.
+/// Explicit Euler: no temperature passes the temperatures of its neighbours while the step is below C/sum of the
+/// conductances.
 void FixHeat::end_of_step() {
   for (int i = 0; i < atom->nlocal; ++i) {
     const double C = atom->rmass[i] * capacity_[atom->type[i]], limit = C / conductance_[i];

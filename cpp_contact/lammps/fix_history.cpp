@@ -276,11 +276,8 @@ void FixHistory::read_list() {
   const NeighList& list = **list_;
   const bool excludes = atom->molecular != Atom::ATOMIC;
   const double reach = std::sqrt(listed_factor_), *const radius = atom->radius;
-  const auto is_far = [&](int i, int j) {
-    const double *const xi = atom->x[i], *const xj = atom->x[j];
-    const double most = reach * (radius[i] + radius[j]) + neighbor->skin;
-    const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
-    return dx * dx + dy * dy + dz * dz > most * most;
+  const auto is_apart = [&](int i, int j) {
+    return kernels::is_far(atom->x[i], atom->x[j], radius[i] + radius[j], reach, neighbor->skin);
   };
   pairs_.clear(atom->nmax);
   for (int ii = 0; ii < list.inum; ++ii) {
@@ -289,7 +286,7 @@ void FixHistory::read_list() {
     for (int jj = 0; jj < list.numneigh[i]; ++jj) {
       const int j = list.firstneigh[i][jj];
       if (excludes && force->special_lj[(j >> SBBITS) & 3] == 0.0) continue;
-      if (listed_factor_ < HUGE_VAL && is_far(i, j & NEIGHMASK)) continue;
+      if (listed_factor_ < HUGE_VAL && is_apart(i, j & NEIGHMASK)) continue;
       pairs_.add(i, j & NEIGHMASK);
     }
   }

@@ -110,11 +110,7 @@ void PairLoop::read_lists(const Growth* growth) {
   // no sphere moves farther than half of the skin from its place in the step of the lists
   const double way = listed_ == update->ntimestep ? neighbor->skin : 2.0 * neighbor->skin;
   const double *const radius = atom->radius, reach = std::sqrt(listed_factor_);
-  const auto is_far = [&](int i, int j) {
-    const double *const xi = atom->x[i], *const xj = atom->x[j], most = reach * (radius[i] + radius[j]) + way;
-    const double dx = xi[0] - xj[0], dy = xi[1] - xj[1], dz = xi[2] - xj[2];
-    return dx * dx + dy * dy + dz * dz > most * most;
-  };
+  const auto is_apart = [&](int i, int j) { return is_far(atom->x[i], atom->x[j], radius[i] + radius[j], reach, way); };
   const LAMMPS_NS::NeighList& list = *pair_->list;
   pairs_.clear(atom->nlocal);
   slots_.clear();
@@ -123,7 +119,7 @@ void PairLoop::read_lists(const Growth* growth) {
     pairs_.begin(i);
     for (int jj = 0; jj < list.numneigh[i]; ++jj) {
       const int j = list.firstneigh[i][jj] & NEIGHMASK;
-      if (narrows && is_far(i, j)) continue;
+      if (narrows && is_apart(i, j)) continue;
       pairs_.add(i, j);
       slots_.push_back(jj);
     }

@@ -22,8 +22,8 @@ def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> 
 def chart(outcome: Outcome) -> Chart:
     """The work-precision figure: error of e_n against time per contact and against steps.
 
-    A colour is a law, a kind of points an engine; models of other codes are black. Errors of a law are those of the
-    first engine: the other ones repeat them.
+    A colour is a law, a kind of points an engine; models of other codes are black. Each law has the errors
+    of the first engine, which the other engines repeat.
     """
     left: list[Series] = []
     right: list[Series] = []

@@ -2,6 +2,7 @@
 """LAMMPS's `mdr` and `hertz/material` on the same plans, for comparison."""
 
 import math
+from abc import abstractmethod
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -31,9 +32,9 @@ class _Granular(Lammps):
     def missing(self) -> str | None:
         return launcher.missing_program()
 
+    @abstractmethod
     def contact(self, x: Experiment) -> str:
         """Words of the model. Raises CaseError for cases outside it."""
-        raise NotImplementedError
 
     def deck(self, plan: Plan, model: Model | None = None) -> ImpactDeck:
         """The deck of a plan. Raises CaseError for cases outside the model."""
