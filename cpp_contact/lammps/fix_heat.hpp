@@ -2,20 +2,16 @@
 // Heat of spheres: conduction through the area of their contacts, and a share of the plastic and frictional work.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "fix.h"
-#include "kernels/block.hpp"
+#include "fix_history.hpp"
+#include "kernels/heat.hpp"
 #include "modify.h"
-#include "words.hpp"
 
 namespace epdem::lammps {
 
 /// fix ID all heat/ep SHARE k c [k c ...] [wall FIX T k ...]: conductivity and specific heat of each type; FIX: a wall
-/// with a temperature, others are adiabatic. fix_modify ID temperature FROM TO T: spheres with these numbers.
-/// A contact of radius a conducts 2 k a (T_j - T_i), 2/k = 1/k_i + 1/k_j. Temperatures take a step at the end of each
-/// step. vector_atom: temperatures; vector: the heat flow into each wall in the last step.
+/// with a temperature. fix_modify ID temperature FROM TO T: spheres with these numbers. vector_atom: temperatures;
+/// vector: the heat flow into each wall in the last step.
 class FixHeat final : public LAMMPS_NS::Fix {
  public:
   static constexpr const char* style_name = "heat/ep";
@@ -28,10 +24,9 @@ class FixHeat final : public LAMMPS_NS::Fix {
 
   /// At the start of an evaluation: gives ghosts their temperatures. Collective.
   void open();
-  /// Adds the heat of n contacts of spheres.
-  void add_pairs(const kernels::Block& b, int n, const Models& models);
+  void add_pairs(const kernels::Block& b, int n) { heat_.add_pairs(b, n); }
   /// Adds the heat of n contacts with the wall of a fix.
-  void add_wall(const kernels::Block& b, int n, const Models& models, const char* fix);
+  void add_wall(const kernels::Block& b, int n, const char* fix);
 
   int setmask() override { return LAMMPS_NS::FixConst::END_OF_STEP; }
   void init() override;
@@ -53,16 +48,8 @@ class FixHeat final : public LAMMPS_NS::Fix {
   double memory_usage() override;
 
  private:
-  struct Wall {
-    std::string fix;
-    double temperature, conductivity, flow;
-  };
-  double source(const kernels::Block& b, int k, const Models& models) const;
-
-  double share_ = 0.0;
-  std::vector<double> conductivity_, capacity_;  // by type
-  std::vector<Wall> walls_;
-  std::vector<double> flow_, conductance_;  // of each sphere, in the last step
+  kernels::Heat heat_;
+  const FixHistory* history_ = nullptr;
 };
 
 }  // namespace epdem::lammps

@@ -65,6 +65,8 @@ class FixHistory : public LAMMPS_NS::Fix {
   HalfEnergies half_energies(const kernels::Block& b, const Models& models);
   /// Adds plastic work and elastic energy of n contacts with a wall to their atoms.
   void add_wall_energies(const kernels::Block& b, int n, const Models& models);
+  /// Plastic and frictional work of the contacts of an atom since the start.
+  double work_of(int i) const { return array_atom[i][plastic_work] + array_atom[i][friction_work]; }
   /// Adds the energies of friction and the work of adhesion of n contacts: half of a pair to each atom of this rank.
   void add_works(const kernels::Block& b, int n, const Models& models, bool wall);
   /// Notes the largest w a/R* and w overlap/R* of a block.

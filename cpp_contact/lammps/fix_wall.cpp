@@ -262,7 +262,7 @@ void FixWall::finish(int n) {
   if (pass_.work) {
     pair_->history()->add_wall_energies(b, n, words_.models);
     pair_->history()->add_works(b, n, words_.models, true);
-    if (heat_) heat_->add_wall(b, n, words_.models, id);
+    if (heat_) heat_->add_wall(b, n, id);
   }
   if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);

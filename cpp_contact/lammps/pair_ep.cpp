@@ -288,7 +288,7 @@ void PairEp::finish(int n) {
   if (pass_.work) {
     scatter(history_->half_energies(b, models_));
     history_->add_works(b, n, models_, false);
-    if (heat_) heat_->add_pairs(b, n, models_);
+    if (heat_) heat_->add_pairs(b, n);
   } else {
     scatter(kernels::NothingBeside{});
   }

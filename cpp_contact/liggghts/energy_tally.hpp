@@ -20,6 +20,8 @@ namespace epdem::liggghts {
 /// so each adds to its own body only.
 class EnergyTally {
  public:
+  static constexpr const char *work_name = "plasticWork", *friction_name = "frictionWork";
+
   /// Indices of the bodies, and from which index on a body belongs to another rank.
   struct Bodies {
     int i, j, nlocal;
@@ -96,10 +98,8 @@ class EnergyTally {
 
  private:
   bool gives_back_ = false;
-  static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
   static constexpr const char* loaded_name = "loadedContacts";
-  static constexpr const char* friction_name = "frictionWork";
   static constexpr const char* springs_name = "frictionEnergy";
   static constexpr const char* adhesive_name = "adhesiveWork";
 

@@ -79,6 +79,7 @@ class LawModel : public NormalModel {
 
     state_.stiffness = 8.0 * pair.shear_modulus;
     state_.pressed = pressed_by(now, now.force);
+    state_.radius = now.radius;
     s.Fn = contact.load;  // friction's limit is mu times it, after what cohesion made of it
     s.kn = contact.k_n;
     s.kt = contact.k_t;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "epdem/sub_models.hpp"
+#include "heat.hpp"
 #include "normal.hpp"
 #include "simulation.hpp"
 
@@ -90,6 +91,7 @@ class Model : public ContactModelBase {
  public:
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
       : ContactModelBase(lmp, is_wall),
+        lmp_(lmp),
         wall_(is_wall),
         ids_(checked(lmp, hash)),
         surface_({lmp, setup, this, ids_}),
@@ -97,7 +99,12 @@ class Model : public ContactModelBase {
         cohesion_({lmp, setup, this, ids_}),
         tangential_(Site{lmp, setup, this, ids_, &normal_->state()}),
         rolling_({lmp, setup, this, ids_}) {
-    if (!is_wall) say_once(lmp, "epdem " EPDEM_VERSION ":" + model_names());
+    if (is_wall) {
+      wall_gran_ = dynamic_cast<LAMMPS_NS::FixWallGran*>(setup);
+      return;
+    }
+    say_once(lmp, "epdem " EPDEM_VERSION ":" + model_names());
+    FixHeat::add_style(lmp);
   }
 
   /// Settings of LIGGGHTS's models that our loops must know.
@@ -112,6 +119,7 @@ class Model : public ContactModelBase {
   };
   const LoopSettings& loop_settings() const { return loop_settings_; }
   NormalModel& normal() { return *normal_; }
+  FixHeat* heat() { return heat_; }
 
   int64_t hashcode() { return ids_.hash(); }
 
@@ -146,11 +154,13 @@ class Model : public ContactModelBase {
     cohesion_.connectToProperties(registry);
     tangential_.connectToProperties(registry);
     rolling_.connectToProperties(registry);
+    heat_ = FixHeat::of(lmp_, normal_->tally() != nullptr);
   }
 
   void beginPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
     surface_.beginPass(s, i, j);
     normal_->beginPass(s);
+    if (heat_ && s.computeflag && s.shearupdate) heat_->open();
     cohesion_.beginPass(s, i, j);
     tangential_.beginPass(s, i, j);
     rolling_.beginPass(s, i, j);
@@ -181,6 +191,9 @@ class Model : public ContactModelBase {
     cohesion_.surfacesIntersect(s, i, j);
     tangential_.surfacesIntersect(s, i, j);
     rolling_.surfacesIntersect(s, i, j);
+    if (!heat_ || !s.computeflag || !s.shearupdate) return;
+    const double radius = normal_->state().radius;
+    wall_ ? heat_->add_wall(s.i, s.fix_mesh, *wall_gran_, radius) : heat_->sums().add_pair(s.i, s.j, radius);
   }
 
   void endSurfacesIntersect(SurfacesIntersectData& s, LAMMPS_NS::TriMesh* mesh, ForceData& i, ForceData& j) {
@@ -236,8 +249,11 @@ class Model : public ContactModelBase {
     return ratio;
   }
 
+  LAMMPS_NS::LAMMPS* const lmp_;
   const bool wall_;
   const Ids ids_;
+  FixHeat* heat_ = nullptr;
+  LAMMPS_NS::FixWallGran* wall_gran_ = nullptr;  // of a wall
   LoopSettings loop_settings_;
   Chosen<SurfaceModelBase, surface_model> surface_;
   const std::unique_ptr<NormalModel> normal_;

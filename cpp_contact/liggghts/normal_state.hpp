@@ -11,6 +11,7 @@ namespace epdem::liggghts {
 struct NormalContactState {
   Pressed<double> pressed{};  // but for the load: that is LIGGGHTS's Fn, which cohesion may change
   double stiffness = 0.0;     // 8 G* [Pa]
+  double radius = 0.0;        // of the contact
   bool is_new = false;        // the pair parted since it was last stored: its history is void
   bool flattens = false;
   EnergyTally* tally = nullptr;  // where work is added, if computePlasticWork is on

@@ -8,10 +8,12 @@ from scene_runs import restart_steps, run, write_case
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
-from epdem.engines.lammps import launcher, resume
+from epdem.engines.lammps import launcher as lammps
+from epdem.engines.lammps import resume as lammps_resume
+from epdem.engines.liggghts import launcher as liggghts
+from epdem.engines.liggghts import resume as liggghts_resume
 from epdem.engines.yade import deck as yade_scene
 from epdem.errors import CaseError
-from epdem.jobs.engine import check
 from epdem.jobs.stage import write_deck
 from epdem.scenes.judge.warnings import planned_warnings
 from epdem.scenes.plan.plan import plan
@@ -19,6 +21,10 @@ from epdem.scenes.tables.columns import last_frame
 
 HEAT = {"thermal_conductivity": "1 W/(m K)", "specific_heat": "800 J/(kg K)"}
 METAL = {"thermal_conductivity": "50 W/(m K)", "specific_heat": "500 J/(kg K)"}
+HOSTS = pytest.mark.parametrize(
+    "host", [pytest.param(name, marks=getattr(pytest.mark, name)) for name in ("lammps", "liggghts")]
+)
+LAUNCHERS = {"lammps": (lammps, lammps_resume), "liggghts": (liggghts, liggghts_resume)}
 FLOW = {"name": "q", "wall": "floor", "heat_flow": True, "title": "heat flow into the floor"}
 WARM = FLOOR | {"temperature": "350 K"}
 
@@ -30,8 +36,8 @@ def warm(**scene):
     return data
 
 
-@pytest.mark.lammps
-def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_floor(tmp_path):
+@HOSTS
+def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_floor(host, tmp_path):
     """From a bed at 1e-3 K: the works are small beside the heat of room temperature. A frozen body conducts, too."""
     body = {"name": "post", "material": "steel", "radius": "3 mm", "position": ["0 mm", "0 mm", "2.99 mm"]}
     body |= {"frozen": True, "temperature": "0.01 K"}
@@ -39,10 +45,10 @@ def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_floor(tmp_path):
     bed["region"] = BED["region"] | {"z": ["7 mm", "38 mm"]}
     data = warm(wall=[FLOOR | {"temperature": "0.02 K"}], body=[body], fill=[bed], periodic=True)
     data["contact"] = {"friction": 0.3, "tangential": "partial_slip", "heat_share": 0.8}
-    found = run(write_case(data, tmp_path), "lammps", out=tmp_path / "out").results
-    first, last = (found.particles.query(f"step == {step}") for step in (0, found.rows["step"].max()))
-    c = np.where(first["radius"] == 3e-3, 500.0, 800.0)
-    gained = (first["mass"].to_numpy() * c * (last["temperature"].to_numpy() - first["temperature"].to_numpy())).sum()
+    found = run(write_case(data, tmp_path), host, out=tmp_path / "out").results
+    last = last_frame(found.particles)
+    c, start = np.where(last["radius"].to_numpy()[:, None] == 3e-3, (500.0, 0.01), (800.0, 1e-3)).T
+    gained = (last["mass"] * c * (last["temperature"] - start)).sum()
     works = last["plastic_work"].sum() + last["friction_work"].sum()
     rows = found.rows
     into = (rows["q"].to_numpy()[1:] * np.diff(rows["time"])).sum()
@@ -52,8 +58,8 @@ def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_floor(tmp_path):
     assert post["temperature"].item() > 0.01 and post[["vx", "vy", "vz"]].to_numpy().max() == 0
 
 
-@pytest.mark.lammps
-def test_the_flow_has_the_radius_of_growth(tmp_path):
+@HOSTS
+def test_the_flow_has_the_radius_of_growth(host, tmp_path):
     """A sphere that six planes dent grows at each of them; the table of contacts has its radii by another route."""
     planes = [
         {"name": f"{axis}{side}", "kind": "plane", "axis": axis, "at": f"{sign * 1.9} mm", "material": "steel"}
@@ -68,7 +74,7 @@ def test_the_flow_has_the_radius_of_growth(tmp_path):
     data["law"] = {"name": "cavity", "compaction": True}
     data["output"] = {"rows": 20, "particles": 2, "contacts": 2}
     data["scene"]["phase"] = [{"name": "rest", "duration": "2 ms"}]
-    found = run(write_case(data, tmp_path), "lammps", out=tmp_path / "out").results
+    found = run(write_case(data, tmp_path), host, out=tmp_path / "out").results
     contact = last_frame(found.contacts).query("wall == 'zlow'").iloc[0]
     assert contact["added_overlap"] > 0.01 * contact["overlap"]
     ball = last_frame(found.particles)["temperature"].item()
@@ -76,8 +82,8 @@ def test_the_flow_has_the_radius_of_growth(tmp_path):
     assert found.rows["q"].iloc[-1] == pytest.approx(expected, rel=1e-5)
 
 
-@pytest.mark.lammps
-def test_late_spheres_have_their_temperatures(tmp_path):
+@HOSTS
+def test_late_spheres_have_their_temperatures(host, tmp_path):
     drop = {"name": "late", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "35 mm"]}
     drop |= {"temperature": "400 K", "phase": "drop"}
     body = drop | {"name": "early", "position": ["8 mm", "8 mm", "38 mm"], "temperature": "320 K"}
@@ -85,21 +91,21 @@ def test_late_spheres_have_their_temperatures(tmp_path):
     phases = [{"name": "fall", "duration": "10 ms"}, {"name": "drop", "duration": "2 ms"}]
     bed = BED | {"temperature": "300 K", "region": BED["region"] | {"z": ["2 mm", "30 mm"]}}
     data = warm(body=[drop, body], phase=phases, fill=[bed])
-    found = run(write_case(data, tmp_path), "lammps", out=tmp_path / "out").results.particles
+    found = run(write_case(data, tmp_path), host, out=tmp_path / "out").results.particles
     last = last_frame(found)
     steel = last[last["radius"] == 2e-3].sort_values("z")["temperature"].to_numpy()
     assert steel == pytest.approx([400.0, 320.0], rel=1e-9)
     assert last[last["radius"] != 2e-3]["temperature"].to_numpy() == pytest.approx(np.full(40, 300.0), rel=1e-9)
 
 
-@pytest.mark.lammps
-def test_a_scene_goes_on_bitwise(tmp_path):
+@HOSTS
+def test_a_scene_goes_on_bitwise(host, tmp_path):
     """From a restart file of each phase; spheres come with the second one."""
     ball = {"name": "late", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "35 mm"]}
     phases = [{"name": "fall", "duration": "40 ms"}, {"name": "drop", "duration": "40 ms"}]
     data = warm(body=[ball | {"temperature": "400 K", "phase": "drop"}], phase=phases, periodic=True)
     data["output"] = {"rows": 20, "particles": 20, "restarts": 10}
-    tool, p = scene_engine("lammps"), plan(parse(data))
+    (launcher, resume), tool, p = LAUNCHERS[host], scene_engine(host), plan(parse(data))
     write_deck(tool, p, tmp_path)
     launcher.run("in.scene", tmp_path)
     whole = tool.read(p, tmp_path)
@@ -131,19 +137,18 @@ def test_what_lacks_a_temperature_or_a_property_is_refused(data, sentence):
         plan(parse(data))
 
 
-def test_an_engine_without_heat_names_the_one_that_has_it():
-    with pytest.raises(CaseError, match=r"the plugin of LIGGGHTS conducts no heat; .*use --engine lammps"):
-        check(scene_engine("liggghts"), plan(parse(warm())))
+def test_an_engine_without_heat_says_so():
     with pytest.raises(CaseError, match="the module of YADE conducts no heat"):
         yade_scene.check(plan(parse(warm())))
 
 
-def test_a_scene_without_temperatures_has_no_word_of_heat():
+@pytest.mark.parametrize(("host", "file"), [("lammps", "in.scene"), ("liggghts", "setup.in")])
+def test_a_scene_without_temperatures_has_no_word_of_heat(host, file):
     data = warm(wall=[FLOOR], fill=[BED], row=[])
     plain = parts(wall=[FLOOR], fill=[BED], row=[])
-    decks = [scene_engine("lammps").files(plan(parse(x))) for x in (data, plain)]
-    assert decks[0] == decks[1] and "heat" not in decks[0]["in.scene"]
-    with_heat = scene_engine("lammps").files(plan(parse(warm())))["in.scene"]
+    decks = [scene_engine(host).files(plan(parse(x))) for x in (data, plain)]
+    assert decks[0] == decks[1] and not any("heat" in text or "temperature" in text for text in decks[0].values())
+    with_heat = scene_engine(host).files(plan(parse(warm())))[file]
     assert "heat/ep 0.9 1.0 800.0 50.0 500.0 wall wall_floor 350.0 50.0" in with_heat
 
 

@@ -173,6 +173,7 @@ void PairLoop::finish(const Plan& plan, int n) {
   else
     turns ? scatter<true, false, reach>(plan, n) : scatter<false, false, reach>(plan, n);
   if (plan.tally && plan.adds_friction) add_friction(*plan.tally, n);
+  if (plan.heat) plan.heat->sums().add_pairs(*block_, n);
 }
 
 /// A pair without a mark is new: its history is not read.

@@ -9,6 +9,7 @@
 #include "energy_tally.hpp"
 #include "epdem/exists.hpp"
 #include "growth.hpp"
+#include "heat.hpp"
 #include "kernels/pair_list.hpp"
 #include "state.hpp"
 #include "strain.hpp"
@@ -25,6 +26,7 @@ struct Plan {
   bool adds_friction = false;       // friction computes its work
   EnergyTally* tally = nullptr;     // where plastic work is added, if it is requested
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
+  FixHeat* heat = nullptr;          // of the spheres, with temperatures
   Growth* growth = nullptr;         // of the spheres, with compaction
   GapPlaces gap;                    // in a history
   int last_step = -1;               // place in a history

@@ -47,6 +47,7 @@ class Planned {
     plan_.settings.cohesion_slides = model_.loop_settings().cohesion_slides;
     plan_.tally = normal.tally();
     plan_.strain = normal.strain();
+    plan_.heat = model_.heat();
     plan_.growth = normal.growth();
     plan_.gap = normal.gap();
     const Kernels& kernels = state_of(lmp_).kernels;

@@ -102,6 +102,7 @@ void WallLoop::scatter() {
       add_couple(i, mesh_[k], b.overlap.a[k], part(b.from_wall), part(b.force), part(b.torque_i));
     }
     if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k], b.pressure_i.a[k]);
+    if (plan_->heat) plan_->heat->add_wall(i, mesh_[k], *wall_, b.contact_radius.a[k]);
     if (!plan_->tally) continue;
     const double stored = b.stored_energy.a[k];
     plan_->tally->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);

@@ -4,11 +4,12 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ..base.rendering import number
+from ..base.rendering import number, wall_id
 from ..case.motions import PressMove
 from ..case.walls import PlateWall
 from ..errors import CaseError
@@ -39,6 +40,27 @@ def data_text(title: str, types: int, box: Iterable[float], rows: Iterable[Seque
     head = [f"{' '.join(title.split())}: id type diameter density x y z", "", f"{len(atoms)} atoms"]
     head += [f"{types} atom types", f"{xlo} {xhi} xlo xhi", f"{ylo} {yhi} ylo yhi", f"{zlo} {zhi} zlo zhi"]
     return "\n".join([*head, "", "Atoms", "", *atoms, "", "Velocities", "", *velocities, ""])
+
+
+def heat_words(p: ScenePlan) -> str:
+    """The words of fix heat/ep; "": the scene has no heat."""
+    if p.heat is None:
+        return ""
+    types = zip(p.heat.conductivities, p.heat.capacities, strict=True)
+    conductivity = {name: p.heat.conductivities[kind - 1] for name, kind in p.wall_types.items()}
+    words = [number(x) for x in (p.heat.share, *(x for one in types for x in one))]
+    walls = (f"wall {wall_id(w)} {number(T)} {number(conductivity[w])}" for w, T in p.heat.walls.items())
+    return " ".join([*words, *walls])
+
+
+def temperature_words(p: ScenePlan, phase: str, spheres: Iterable[tuple[int, float | None]]) -> tuple[str, ...]:
+    """First and last id of spheres that come with a phase, and their temperature; spheres: (number, temperature)."""
+    last, found = p.count_before(phase), []
+    for T, some in groupby(spheres, key=lambda x: x[1]):
+        first, last = last + 1, last + sum(count for count, _ in some)
+        if T is not None:
+            found.append(f"{first} {last} {number(T)}")
+    return tuple(found)
 
 
 def taken_places(p: ScenePlan, phase: str, radius: str) -> tuple[tuple[str, str], ...]:

@@ -21,7 +21,7 @@ _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d
 # thermo words of the deck and their columns; for the loads of walls see `_column`
 ROWS = {x.words["thermo"]: name for name, x in quantities.ROWS.items() if "thermo" in x.words}
 _LOAD, _WAY = re.compile(r"load(\d+)\[(\d)\]"), re.compile(r"(?:v_)?way(\d+)")
-_HEAT = re.compile(r"heat_flow(\d+)")
+_HEAT = re.compile(r"flow(\d+)")
 _TOTAL = re.compile(r" - a total of (\d+) particle templates ")
 
 

@@ -4,7 +4,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from itertools import combinations, groupby
+from itertools import combinations
 
 import numpy as np
 
@@ -19,7 +19,16 @@ from ...scenes.plan.phases import PhaseSteps
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.tables.columns import columns_of_frames
 from ..host import refuse
-from ..input_script import StopCondition, data_text, default_skin, row_words, stop_condition, taken_places
+from ..input_script import (
+    StopCondition,
+    data_text,
+    default_skin,
+    heat_words,
+    row_words,
+    stop_condition,
+    taken_places,
+    temperature_words,
+)
 from . import words
 from .scene_walls import DeckWall, force, height, meshes, motions, plane, power, restart_commands, stop_commands, way
 
@@ -122,7 +131,7 @@ def _phases(p: ScenePlan) -> Iterator[PhaseCommands]:
             time_step=run.own_time_step,
             data=_data_file(p, run.name),
             placed=p.count_before(run.name),
-            temperatures=tuple(_temperatures(p, run.name)),
+            temperatures=temperature_words(p, run.name, placement.temperatures(p, run.name)),
             places=taken_places(p, run.name, "radius"),
             driven=tuple((name, way(p, name)) for name in p.driven_before(run.name)),
             fills=tuple(_fills(p, run.name)),
@@ -160,32 +169,11 @@ def deck(p: ScenePlan) -> SceneDeck:
             "f_ratio[1]",
             "f_ratio[2]",
             *row_words(p),
-            *(f"f_heat_flow{n}" for n in p.heat_flows),
+            *(f"f_flow{n}" for n in p.heat_flows),
         ),
         columns=quantities.words("lammps", columns_of_frames(p)),
-        heat=_heat(p),
+        heat=heat_words(p),
     )
-
-
-def _heat(p: ScenePlan) -> str:
-    """The words of fix heat/ep; "": the scene has no heat."""
-    if p.heat is None:
-        return ""
-    types = zip(p.heat.conductivities, p.heat.capacities, strict=True)
-    conductivity = {name: p.heat.conductivities[kind - 1] for name, kind in p.wall_types.items()}
-    words = [decks.number(x) for x in (p.heat.share, *(x for one in types for x in one))]
-    walls = (
-        f"wall {decks.wall_id(w)} {decks.number(T)} {decks.number(conductivity[w])}" for w, T in p.heat.walls.items()
-    )
-    return " ".join([*words, *walls])
-
-
-def _temperatures(p: ScenePlan, phase: str) -> Iterator[str]:
-    """First and last id of the spheres that come with a phase, and their temperature."""
-    last = p.count_before(phase)
-    for T, some in groupby(placement.temperatures(p, phase), key=lambda x: x[1]):
-        first, last = last + 1, last + sum(count for count, _ in some)
-        yield f"{first} {last} {decks.number(T)}"
 
 
 def _is_special(m: Model, i: int, j: int) -> bool:

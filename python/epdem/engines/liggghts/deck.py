@@ -16,10 +16,9 @@ from ...scenes.plan import quantities
 from ...scenes.plan.meshes import stl_text
 from ...scenes.plan.model import Model
 from ...scenes.plan.plan import ScenePlan
-from ...scenes.plan.quantities import PARTICLES, SPINS
-from ...scenes.tables.columns import GROWTH
-from ..host import refuse, refuse_narrow
-from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, row_words
+from ...scenes.tables.columns import GROWTH, columns_of_spheres
+from ..host import refuse_narrow
+from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, heat_words, row_words
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
 from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, surface_meshes
@@ -177,6 +176,7 @@ class SceneDeck:
     contact_columns: tuple[int, ...]
     wall_contact_columns: tuple[int, ...]
     row_words: tuple[str, ...]
+    heat: str
     from_restart: str | None = None
     resumed_phase: int = 0
     comes: bool = False
@@ -191,13 +191,12 @@ class SceneDeck:
 def deck(p: ScenePlan) -> SceneDeck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
-    refuse("temperature", p.heat is not None, "the plugin of LIGGGHTS conducts no heat")
     skin = p.case.numerics.skin or default_skin(p)
     refuse_narrow(p, 2.0 * (2.0 * p.largest + skin), "LIGGGHTS has one history for a pair of spheres, also for images")
     _refuse_meshes(p)
     _refuse_skin(p)
     _refuse_restarts(p)
-    m, recorded = p.model, ["computePlasticWork on"] * bool(p.works) + ["computeContactStrain on"]
+    m, recorded = p.model, ["computePlasticWork on"] * bool(p.works or p.heat) + ["computeContactStrain on"]
     commands = phases(p)
     return SceneDeck(
         plan=p,
@@ -210,7 +209,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         insertions=insertions(p),
         phases=commands,
         open=p.ends_early or any(phase.speeds for phase in commands),
-        particle_words=quantities.words("liggghts", [*PARTICLES, *(SPINS if p.model.spins else ())]),
+        particle_words=quantities.words("liggghts", columns_of_spheres(p)),
         work_words=quantities.words("liggghts", p.works),
         history=history(m),
         wall_history=history(m, wall=True),
@@ -220,8 +219,10 @@ def deck(p: ScenePlan) -> SceneDeck:
             "c_ratio[1]",
             "c_ratio[2]",
             *row_words(p),
+            *(f"f_flow{n}" for n in p.heat_flows),
             *["v_awaited", "v_opposite"] * _looks_at_primitives(commands),
         ),
+        heat=heat_words(p),
     )
 
 

@@ -22,6 +22,7 @@ from ..input_script import (
     data_text,
     stop_condition,
     taken_places,
+    temperature_words,
     torque_origin,
 )
 from .motions import motions, power, vector_words
@@ -90,6 +91,7 @@ class DeckPhase:
     resume_gates: tuple[Primitive, ...]
     resume_commands: tuple[str, ...]
     end_commands: tuple[str, ...]
+    temperatures: tuple[str, ...]
     bodies: str
     places: tuple[tuple[str, str], ...]
     driven: tuple[tuple[str, list[str]], ...]
@@ -243,6 +245,7 @@ def phases(p: ScenePlan) -> tuple[DeckPhase, ...]:
                 *(f"unfix {decks.wall_id(name)}" for name in run.removed),
                 *(f"unfix move_{name}" for name in words if after and not (run.stops or name in after.moves)),
             ),
+            temperatures=temperature_words(p, run.name, ((1, s.temperature) for s in _given(p, run.name))),
             bodies=bodies_file(run.name) if any(b.phase == run.name for b in p.scene.later) else "",
             places=taken_places(p, run.name, "r"),
             driven=tuple((name, _way(p, name)) for name in p.driven_before(run.name)),
@@ -265,11 +268,16 @@ def data(p: ScenePlan) -> dict[str, str]:
 
     Ids of later ones follow those of all earlier spheres, also of lost ones.
     """
-    given = {"spheres.data": (p.scene.table, 0)}
-    for phase in p.phases[1:]:
-        later = [b.sphere for b in p.scene.later if b.phase == phase.name]
-        given[bodies_file(phase.name)] = later, p.count_before(phase.name)
+    names = [phase.name for phase in p.phases]
+    given = {bodies_file(name): (_given(p, name), p.count_before(name)) for name in names[1:]}
+    given = {"spheres.data": (_given(p, names[0]), 0)} | given
     return {name: _data(p, spheres, before) for name, (spheres, before) in given.items() if spheres}
+
+
+def _given(p: ScenePlan, phase: str) -> Sequence[Sphere]:
+    """The spheres with given places that come with a phase."""
+    first = phase == p.phases[0].name
+    return p.scene.table if first else [b.sphere for b in p.scene.later if b.phase == phase]
 
 
 def _data(p: ScenePlan, spheres: Sequence[Sphere], before: int) -> str:

@@ -14,7 +14,6 @@ from ...errors import EngineError
 from ...impacts import engine as impacts
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
-from ...scenes.plan import quantities
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.tables import columns
 from .. import log
@@ -83,7 +82,7 @@ def _formulas(p: ScenePlan) -> dict[str, PlaneWall | CylinderWall]:
 
 
 def _particle_names(p: ScenePlan) -> list[str]:
-    names = [*quantities.PARTICLES, *(quantities.SPINS if p.model.spins else ())]
+    names = columns.columns_of_spheres(p)
     values = [*history(p.model), *columns.FORCE]
     names += [f"{value}_{name}" for name in _formulas(p) for value in values] if p.contacts else []
     return [*names, *p.works]

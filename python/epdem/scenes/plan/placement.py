@@ -90,14 +90,13 @@ def later_bodies(p: ScenePlan, phase: str) -> list[tuple[float, ...]]:
     return [of_sphere(p, b.sphere) for b in p.scene.later if b.phase == phase]
 
 
-def temperatures(p: ScenePlan, phase: str) -> list[tuple[int, float]]:
-    """(number, temperature [K]) of spheres that come together with a phase, in the order of their ids."""
+def temperatures(p: ScenePlan, phase: str) -> list[tuple[int, float | None]]:
+    """(number, temperature [K] or None) of spheres that come together with a phase, in the order of their ids."""
     first = p.phases[0].name
     table = [s.temperature for s in p.scene.table] if phase == first else []
     fills = [(f.count, f.temperature) for f in _at_once(p, phase)]
     bodies = [b.temperature for b in p.scene.later if b.phase == phase]
-    every = [*((1, T) for T in table), *fills, *((1, T) for T in bodies)]
-    return [(count, T) for count, T in every if T is not None]
+    return [*((1, T) for T in table), *fills, *((1, T) for T in bodies)]
 
 
 def of_sphere(p: ScenePlan, s: Sphere) -> tuple[float, ...]:

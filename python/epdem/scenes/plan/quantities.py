@@ -51,7 +51,7 @@ PARTICLES = {
     **{f"v{axis}": Quantity("m/s", f"velocity along {axis}") for axis in "xyz"},
 }
 SPINS = {f"omega_{x}": Quantity("rad/s", f"angular velocity about {x}", _both(f"omega{x}")) for x in "xyz"}
-TEMPERATURE = {"temperature": Quantity("K", "temperature", {"lammps": "f_heat"})}
+TEMPERATURE = {"temperature": Quantity("K", "temperature", {"liggghts": "f_temperature", "lammps": "f_heat"})}
 WORKS = {
     "plastic_work": Work(
         "plastic work so far",

@@ -70,9 +70,14 @@ def columns_of_rows(p: ScenePlan) -> set[str]:
     return {*ROWS, *named, *loads} - ({"wall_power"} - {*p.row_columns})
 
 
+def columns_of_spheres(p: ScenePlan) -> list[str]:
+    """The names of the columns that the frames of a scene have beside the step and the works."""
+    return [*PARTICLES, *(SPINS if p.model.spins else ()), *(TEMPERATURE if p.heat else ())]
+
+
 def columns_of_frames(p: ScenePlan) -> list[str]:
     """The names of the columns that the frames of a scene have beside the step."""
-    return [*PARTICLES, *(SPINS if p.model.spins else ()), *(TEMPERATURE if p.heat else ()), *p.works]
+    return [*columns_of_spheres(p), *p.works]
 
 
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
