@@ -95,11 +95,14 @@ def _cell(text: str) -> str:
 
 def python() -> str:
     """The public names of the package with their signatures and docstrings."""
-    text = ["# Python\n"]
-    for name in sorted(vars(epdem)["__all__"]):
-        thing = getattr(epdem, name)
+    text, package = ["# Python\n"], {name: getattr(epdem, name) for name in sorted(vars(epdem)["__all__"])}
+    for name, thing in [*package.items()]:
         if inspect.ismodule(thing):
-            text.append(f"## {name}\n\n{inspect.getdoc(thing)}\n")
+            package |= {f"{name}.{part}": getattr(thing, part) for part in thing.__all__}
+    for name, thing in package.items():
+        if not callable(thing):
+            said = inspect.getdoc(thing) if inspect.ismodule(thing) else f"The laws {', '.join(thing)} as classes."
+            text.append(f"## {name}\n\n{said}\n")
             continue
         text.append(f"## {name}\n\n```python\n{name}{_signature(thing)}\n```\n\n{inspect.getdoc(thing) or ''}\n")
         for member, function in inspect.getmembers(thing, inspect.isfunction) if inspect.isclass(thing) else []:
@@ -191,7 +194,8 @@ def _said(kind: Any) -> str:
 
 
 def _signature(thing: Any) -> str:
-    return str(inspect.signature(thing)).replace("epdem.", "")
+    array = "numpy.ndarray[tuple[typing.Any, ...], numpy.dtype[numpy.float64]]"
+    return str(inspect.signature(thing)).replace("epdem.", "").replace(array, "Array").replace("float | Array", "Real")
 
 
 def main() -> None:

@@ -211,7 +211,9 @@ def test_the_reference_names_every_command_and_what_the_package_offers():
     for name in ("run", "verify crosscheck", "sweep", "verify rerun", "export liggghts"):
         assert f"## epdem {name}\n" in commands
     assert "| `--full` |" in commands and "points" not in re.findall(r"## epdem (\w+)", commands)
-    assert {f"## {name}" for name in epdem.__all__} <= set(python.splitlines())
+    names = [*epdem.__all__, *(f"theory.{name}" for name in epdem.theory.__all__)]
+    assert {f"## {name}" for name in names} <= set(python.splitlines()) and "numpy.ndarray" not in python
+    assert "Eq. 8.88 [Wu et al. 2003]" in python
     errors = (ROOT / "docs/faq.md").read_text()
     assert all(f"| {code} |" in errors for code in (0, 1, CaseError.exit_code, EngineError.exit_code, 130))
 

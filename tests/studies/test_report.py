@@ -154,6 +154,9 @@ def test_page_and_figure_follow_a_changed_tolerance_title_and_source_of_stored_i
         now = picture.read_bytes()
         assert (now == seen) == (old == "source = ")
         seen = now
+    case.write_text(re.sub("speeds = .*", 'speeds = ["3 m/s"]', text))
+    (share,) = re.findall(r"an estimated (.*?) % of the kinetic", run(tmp_path, "-e", "embedded", code=1))
+    assert float(share) > 0  # one speed has one share
 
 
 def test_a_figure_is_drawn_once_for_page_and_files_and_anew_at_each_call(tmp_path, monkeypatch):

@@ -124,9 +124,10 @@ def impacts_sentences(outcome: Outcome) -> list[str]:
             f"{prediction.e_n.min():.4f}."
         )
         if (share := prediction.wave_share) is not None:
+            span = " to ".join(dict.fromkeys(f"{100 * s:.2g}" for s in (share.min(), share.max())))
             said.append(
-                f"Elastic waves take an estimated {100 * share.min():.2g} to {100 * share.max():.2g} % of the kinetic "
-                "energy (section 8.2.4), which no law of force loses."
+                f"Elastic waves take an estimated {span} % of the kinetic energy (section 8.2.4), which no law of "
+                "force loses."
             )
     said += [f"Engine {line}." for line in largest_errors(outcome)]
     said += [line[0].upper() + line[1:] + "." for line in against_measured(outcome)]
