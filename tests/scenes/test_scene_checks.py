@@ -95,6 +95,35 @@ def test_the_mass_flow_is_the_slope_of_what_is_out_and_beverloo_s_that_of_the_bu
     assert drawn[0].series[1].name == f"Beverloo, {found['expected']:.3g} kg/s"
 
 
+def test_a_steep_cone_flows_faster_by_the_factor_of_rose_and_tanaka():
+    """F = (tan a tan b)^-0.35 for a < 90 - b, 1 beyond, with b = 45 degrees (Rose and Tanaka 1959); the same bed."""
+    rates = {}
+    for angle in ("20 deg", "30 deg", "45 deg", "60 deg"):
+        p = planned("hopper", count=90, half_angle=angle, outlet="6 mm")
+        low = -0.007 / math.tan(math.radians(float(angle[:2])))
+        at, step = p.scene.check[0].at, np.arange(0, p.steps + 1, p.frames)
+        assert at == pytest.approx(low, abs=1e-5)
+        spheres = [{"z": np.where(step > p.steps * (0.5 + k / 190), at - 0.001, 0.0002 * k)} for k in range(90)]
+        tables = {"particles": frames(p, spheres)}
+        flow = checks.discharge(p, p.scene.check[0], tables["particles"])
+        rates[angle] = checks.beverloo(flow, p.scene.check[0], 9.81) / flow.bulk
+    assert rates["60 deg"] == pytest.approx(rates["45 deg"], rel=1e-12)
+    for angle in ("20 deg", "30 deg"):
+        factor = math.tan(math.radians(float(angle[:2]))) ** -0.35
+        assert rates[angle] / rates["45 deg"] == pytest.approx(factor, rel=1e-3)
+
+
+def test_a_flow_that_stops_early_or_is_faster_than_the_frames_says_so():
+    p = planned("hopper", count=30, outlet="12 mm")
+    step = np.arange(0, p.steps + 1, p.frames)
+    for out, words in ((10, "at the end 0.1 of the bed has passed"), (30, "give more output.particles")):
+        late = step > 0.9 * p.steps
+        spheres = [{"z": np.where(late & (k < out * 0.3 + (out == 30) * 21), -0.05, 0.0005 * k)} for k in range(30)]
+        tables = {"particles": frames(p, spheres), "rows": rows(p)}
+        assert [w for w in checks.flow_warnings(p, tables) if words in w]
+        assert (out == 10) == ("mass_flow" in checks.checks(p, tables)["key"].to_list())
+
+
 def test_a_hopper_that_does_not_flow_fails_its_check():
     p = planned("hopper", count=30, outlet="12 mm")
     table = frames(p, [{"z": 0.0005 * k} for k in range(30)])
@@ -108,6 +137,7 @@ def test_a_hopper_that_does_not_flow_fails_its_check():
     [
         ([{"z": 0.0005 * k, "vz": -0.5} for k in range(30)], "12 mm", "the bed still falls as the outlet opens"),
         ([{"z": 0.0005 * k} for k in range(30)], "2.7 mm", "is below 1.4 diameters of the spheres"),
+        ([{"z": 0.003} for _ in range(30)], "19 mm", "above the outlet is below half of the outlet's 0.019 m"),
         ([{"z": 0.0005 * k} for k in range(5)], "12 mm", "5 spheres above the outlet as it opens are no bed"),
     ],
 )

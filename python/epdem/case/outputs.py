@@ -84,6 +84,15 @@ class MassFlow(Frozen):
     at: Place
     cone: Place | None = None
 
+    @property
+    def steepness(self) -> float:
+        """Factor of a cone steeper than the stagnant zone (45 degrees) on Beverloo's rate: tan(half angle)^-0.35.
+
+        Rose and Tanaka 1959, The Engineer 208, 465.
+        """
+        tangent = (self.bin - self.outlet) / 2 / (self.cone - self.at) if self.cone is not None else 1.0
+        return float(min(tangent, 1.0) ** -0.35)
+
     def volume(self, height: float) -> float:
         """Volume [m^3] of the vessel from the outlet up to a height [m]."""
         above = max(height - self.at, 0.0)

@@ -40,6 +40,7 @@ AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed a
 MOST_PRESSED = 5.0  # of a wall, in weights of the bed: up to a tolerance of 10 % the sum of forces tells the weight
 MANY = 20  # frames from which on motion is followed
 LEAST_BED = 20  # spheres that have a bulk density
+SHALLOW = 0.5  # of the outlet's diameter: a lower bed has neither bulk density nor a steady rate
 
 
 def _row(key: str, value: float, expected: float, tolerance: float, *, passed: bool | None = None, **words: int) -> Row:
@@ -109,18 +110,18 @@ def works_of_wall(p: ScenePlan, press: Unloading, rows: pd.DataFrame) -> tuple[f
 
 @dataclass(frozen=True)
 class Discharge:
-    """Flow through an outlet: mass rate [kg/s], bulk density of the bed as it opens [kg/m^3], mean diameter [m] and
-    number of the spheres that came out meanwhile; why no rate is expected, or nothing."""
+    """Flow through an outlet: mass rate [kg/s], bulk density of the bed as it opens [kg/m^3], mean diameter [m],
+    fraction of the bed that has passed at the end; why no rate is expected, or nothing."""
 
     rate: float
     bulk: float
     diameter: float
-    counted: int
+    passed: float
     unknown: str = ""
 
 
-def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[float, float] = (0.2, 0.6)) -> Discharge:
-    """The slope of the mass below the outlet against time, while it is between these parts of the filling.
+def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame) -> Discharge:
+    """The slope of the mass below the outlet against time, while it is between 0.2 and 0.6 of the bed.
 
     NaN where fewer than two frames lie between them. The bulk density is that from 0.2 to 0.7 of the height of the bed
     above the outlet.
@@ -128,12 +129,12 @@ def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[f
     steps = np.sort(spheres["step"].unique())
     bed = spheres[(spheres["step"] == steps[steps <= p.phases[0].end].max()) & (spheres["z"] > flow.at)]
     if len(bed) < LEAST_BED:
-        return Discharge(np.nan, np.nan, np.nan, 0, f"{len(bed)} spheres above the outlet as it opens are no bed")
-    below = spheres[spheres["z"] < flow.at].groupby("step")["mass"]
-    out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
-    during = (out > part[0] * bed["mass"].sum()) & (out < part[1] * bed["mass"].sum())
-    count = below.count().reindex(steps, fill_value=0).to_numpy()[during]
-    low, high = flow.at + np.array([0.2, 0.7]) * (np.quantile(bed["z"], 0.95) - flow.at)
+        return Discharge(np.nan, np.nan, np.nan, 0.0, f"{len(bed)} spheres above the outlet as it opens are no bed")
+    out = spheres[spheres["z"] < flow.at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0).to_numpy()
+    passed = out / bed["mass"].sum()
+    during = (passed > 0.2) & (passed < 0.6)
+    height = float(np.quantile(bed["z"], 0.95) - flow.at)
+    low, high = flow.at + np.array([0.2, 0.7]) * height
     inside = bed[(bed["z"] > low) & (bed["z"] < high)]
     bulk = inside["mass"].sum() / (flow.volume(high) - flow.volume(low))
     diameter, unknown = 2 * float(bed["radius"].mean()), ""
@@ -143,18 +144,24 @@ def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[f
         unknown = "the bed still falls as the outlet opens; give a longer fill_time"
     elif flow.outlet <= 1.4 * diameter:
         unknown = f"the outlet of {flow.outlet:g} m is below 1.4 diameters of the spheres, where nothing flows"
-    rate = np.polyfit(p.time_at(steps[during]), out[during], 1)[0] if count.size > 1 else np.nan
-    return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]) if count.size else 0, unknown)
+    elif height < SHALLOW * flow.outlet:
+        unknown = f"the bed of {height:.3g} m above the outlet is below half of the outlet's {flow.outlet:g} m"
+    elif during.sum() < 2 and passed[-1] >= 0.6:
+        unknown = "the bed flows out between two frames; give more output.particles"
+    rate = np.polyfit(p.time_at(steps[during]), out[during], 1)[0] if during.sum() > 1 else np.nan
+    return Discharge(float(rate), float(bulk), diameter, float(passed[-1]), unknown)
 
 
-def beverloo(discharge: Discharge, outlet: float, gravity: float) -> float:
-    """W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5 [kg/s] through an outlet D [m]; NaN where no rate is expected.
+def beverloo(discharge: Discharge, flow: MassFlow, gravity: float) -> float:
+    """W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5 [kg/s] through an outlet D [m], times the factor of a steep cone.
 
-    Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260; 1.4 stands for 1.2 to 1.6.
+    Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260; 1.4 stands for 1.2 to 1.6. NaN where no rate is
+    expected.
     """
     if discharge.unknown:
         return math.nan
-    return float(0.58 * discharge.bulk * np.sqrt(gravity) * (outlet - 1.4 * discharge.diameter) ** 2.5)
+    flat = 0.58 * discharge.bulk * np.sqrt(gravity) * (flow.outlet - 1.4 * discharge.diameter) ** 2.5
+    return float(flow.steepness * flat)
 
 
 def flow_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
@@ -163,8 +170,14 @@ def flow_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     for flow in (x for x in p.scene.check if isinstance(x, MassFlow) and "particles" in tables):
         spheres, checked = tables["particles"], tables.get("checks")
         compared = checked is not None and (checked["key"] == "mass_flow").any()
-        if not compared and (unknown := discharge(p, flow, spheres).unknown):
-            found.append(f"the mass flow is not compared with Beverloo's formula: {unknown}")
+        found_flow = discharge(p, flow, spheres)
+        if not compared and found_flow.unknown:
+            found.append(f"the mass flow is not compared with Beverloo's formula: {found_flow.unknown}")
+        if not found_flow.unknown and found_flow.passed > 0.0 and math.isnan(found_flow.rate):
+            found.append(
+                f"the mass flow has no value: at the end {found_flow.passed:.2g} of the bed has passed the outlet, and "
+                "a rate is that of two frames or more between 0.2 and 0.6; give a longer duration, or look for an arch"
+            )
         if not (last_frame(spheres)["z"] < flow.at).any() and not p.scene.open_boundary:
             found.append(f"no sphere passed the outlet{_bond_number(p)}")
     return found
@@ -282,7 +295,7 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             case MassFlow() if many:
                 flow = discharge(p, check, tables["particles"])
                 if not flow.unknown:
-                    rows.append(_row("mass_flow", flow.rate, beverloo(flow, check.outlet, p.scene.gravity), 0.2))
+                    rows.append(_row("mass_flow", flow.rate, beverloo(flow, check, p.scene.gravity), 0.2))
             case ReboundSpeed() if many and len(p.phases) == 1:
                 expected = single_rebound(p.case, check)
                 speed, count = rebounds(tables["particles"], check.speed, expected)
