@@ -52,7 +52,7 @@ FixHeat* FixHeat::of(LAMMPS* lmp, bool computes_areas) {
   auto* const found = static_cast<FixHeat*>(lmp->modify->find_fix_style(style_name, 0));
   if (found && !computes_areas)
     lmp->error->all(FLERR,
-                    "fix heat/ep: the area of contacts comes from computePlasticWork on; give it to pairs and "
+                    "fix heat/ep: the area of the contacts comes from computePlasticWork on; give it to pairs and "
                     "walls");
   return found;
 }

@@ -2,6 +2,7 @@
 """Heat of scenes of parts: temperatures of frames, flow into walls, its balance, restart, what is refused."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from parts_cases import BED, FLOOR, GLASS, STEEL, parts
 from scene_runs import restart_steps, run, write_case
@@ -36,23 +37,35 @@ def warm(**scene):
     return data
 
 
+SLIP = {"friction": 0.3, "tangential": "partial_slip"}
+PLATE = {"name": "floor", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "0 mm"], "size": ["20 mm", "20 mm"]}
+
+
 @HOSTS
-def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_floor(host, tmp_path):
+@pytest.mark.parametrize(
+    ("law", "contact", "floor", "ranks"),
+    [
+        ({"name": "thornton"}, SLIP, FLOOR, 1),
+        ({"name": "thornton_ning", "work_of_adhesion": "0.02 J/m^2"}, {}, PLATE | {"material": "steel"}, 2),
+    ],
+    ids=["plane", "adhesion at a mesh"],
+)
+def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_floor(host, law, contact, floor, ranks, tmp_path):
     """From a bed at 1e-3 K: the works are small beside the heat of room temperature. A frozen body conducts, too."""
     body = {"name": "post", "material": "steel", "radius": "3 mm", "position": ["0 mm", "0 mm", "2.99 mm"]}
     body |= {"frozen": True, "temperature": "0.01 K"}
     bed = BED | {"temperature": "1 mK", "velocity": ["0 m/s", "0 m/s", "-2 m/s"]}
     bed["region"] = BED["region"] | {"z": ["7 mm", "38 mm"]}
-    data = warm(wall=[FLOOR | {"temperature": "0.02 K"}], body=[body], fill=[bed], periodic=True)
-    data["contact"] = {"friction": 0.3, "tangential": "partial_slip", "heat_share": 0.8}
-    found = run(write_case(data, tmp_path), host, out=tmp_path / "out").results
+    data = warm(wall=[floor | {"temperature": "0.02 K"}], body=[body], fill=[bed], periodic=True)
+    data |= {"law": law, "contact": contact | {"heat_share": 0.8}}
+    found = run(write_case(data, tmp_path), host, out=tmp_path / "out", ranks=ranks).results
     last = last_frame(found.particles)
     c, start = np.where(last["radius"].to_numpy()[:, None] == 3e-3, (500.0, 0.01), (800.0, 1e-3)).T
     gained = (last["mass"] * c * (last["temperature"] - start)).sum()
-    works = last["plastic_work"].sum() + last["friction_work"].sum()
+    works = last["plastic_work"].sum() + (friction := last.get("friction_work", pd.Series()).sum())
     rows = found.rows
     into = (rows["q"].to_numpy()[1:] * np.diff(rows["time"])).sum()
-    assert works > 0 and abs(into) > 1e-3 * works and last["friction_work"].sum() > 0
+    assert works > 0 and abs(into) > 1e-3 * works and (friction > 0) == bool(contact)
     assert gained + into == pytest.approx(0.8 * works, rel=1e-6)
     post = last[last["radius"] == 3e-3]
     assert post["temperature"].item() > 0.01 and post[["vx", "vy", "vz"]].to_numpy().max() == 0
@@ -80,6 +93,30 @@ def test_the_flow_has_the_radius_of_growth(host, tmp_path):
     ball = last_frame(found.particles)["temperature"].item()
     expected = 2 * (2 / (1 + 1 / 50)) * contact["contact_radius"] * (ball - 350)
     assert found.rows["q"].iloc[-1] == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.lammps
+@pytest.mark.liggghts
+def test_hosts_and_loops_agree(monkeypatch, tmp_path):
+    """Spheres of a table that fall onto a warm floor: temperatures and flow in LAMMPS and in both loops of LIGGGHTS."""
+    places = [(3.1 * (n % 3) - 3 + 0.1 * n, 3.1 * (n // 3 % 3) - 3, 1.6 + 3.05 * (n // 9)) for n in range(18)]
+    body = [
+        {"name": f"s{n}", "material": "glass", "radius": "1.5 mm", "position": [f"{x:.3f} mm" for x in place]}
+        | {"temperature": f"{300 + n} K", "velocity": ["0.1 m/s", "0 m/s", "-0.5 m/s"]}
+        for n, place in enumerate(places)
+    ]
+    data = warm(body=body, fill=[])
+    data["contact"] = SLIP
+    data["scene"]["phase"] = [{"name": "fall", "duration": "4 ms"}]
+    tables = []
+    for host, loop in (("lammps", ""), ("liggghts", ""), ("liggghts", "generic")):
+        monkeypatch.setenv("EPDEM_LOOP", loop)
+        found = run(write_case(data, tmp_path), host, out=tmp_path / (host + loop)).results
+        tables.append([last_frame(found.particles).sort_values("id")["temperature"], found.rows["q"]])
+    assert tables[0][1].abs().max() > 0
+    for temperatures, q in tables[1:]:
+        assert temperatures.to_numpy() - 300 == pytest.approx(tables[0][0].to_numpy() - 300, rel=1e-6)
+        assert q.to_numpy() == pytest.approx(tables[0][1].to_numpy(), rel=1e-6, abs=1e-9)
 
 
 @HOSTS

@@ -1,15 +1,89 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""fix heat/ep in LAMMPS: one contact, lattices, energy, ranks, restart, and what it refuses."""
+"""fix heat/ep in LAMMPS and LIGGGHTS: one contact, lattices, energy, ranks, restart, and what it refuses.
+
+The decks are LAMMPS's; LIGGGHTS runs them in its words."""
 
 import math
+import re
+from functools import partial
 
 import numpy as np
 import pytest
-from lammps_decks import THORNTON, bed, column, lammps, needs_lammps, run, spheres
+from lammps_decks import THORNTON, bed, column, lammps, needs_lammps, spheres
+from plugin_decks import run as liggghts
 
-pytestmark = needs_lammps
-
+HOSTS = pytest.mark.parametrize(
+    "host", [pytest.param(name, marks=getattr(pytest.mark, name)) for name in ("lammps", "liggghts")]
+)
 SLIP = "tangential partial_slip 0.3"
+WORDS = (  # of LAMMPS, of LIGGGHTS
+    (r"atom_style sphere", "atom_style granular\nnewton off"),
+    (r"newton off\n(?=comm_modify)", ""),
+    (r"comm_modify vel yes", "communicate single vel yes"),
+    (r"f_heat(?!\[)", "f_temperature"),
+    (r"f_EP_HISTORY0\[1\] f_EP_HISTORY0\[4\]", "f_plasticWork f_frictionWork"),
+    (r"pair_style ep( energies)?\n", ""),
+    (r" 1234 ", " 15485863 "),
+    (
+        r"write_dump (all custom) (end.txt id type x y z \w+) modify.*",
+        r'dump end \1 1 \2\ndump_modify end sort id format "%d %d %.17g %.17g %.17g %.17g"\nrun 0',
+    ),
+)
+WALL = re.compile(r"fix (\w+) all wall/ep (\wplane) (\S+) (\S+) (.*)")
+
+
+def contact_model(words, types, works):
+    """Properties of like types and the contact model, from the words of a pair or a wall of LAMMPS."""
+    law, E, nu, *others = words.split()
+    properties = {"youngsModulus": E, "poissonsRatio": nu} | ({"yieldPressure": others[0]} if law == "thornton" else {})
+    pairs = {"coefficientFriction": "0.3", "coefficientRestitution": "0.5" if "restitution" in words else "0.9"}
+    tables = {name: f"peratomtype {f'{x} ' * types}" for name, x in properties.items()}
+    tables |= {name: f"peratomtypepair {types} {f'{x} ' * types**2}" for name, x in pairs.items()}
+    lines = [f"fix {name} all property/global {name} {table}\n" for name, table in tables.items()]
+    slip = "ep/partial_slip" if "partial_slip" in words else "off"
+    return "".join(lines), f"model ep/{law} tangential {slip}" + " computePlasticWork on" * works
+
+
+def in_words_of_liggghts(text):
+    """A deck of LAMMPS of one material."""
+    model = partial(contact_model, types=int(re.search(r"create_box (\d)", text)[1]), works="ep energies" in text)
+    for word, other in WORDS:
+        text = re.sub(word, other, text)
+
+    def pair(found):
+        properties, words = model(found[1])
+        return f"{properties}pair_style gran {words}\npair_coeff * *\n"
+
+    def wall(found):
+        planes = [(found[1], found[3]), (found[1] + "_high" * (found[3] != "NULL"), found[4])]
+        words, settings = re.fullmatch(r"(.*?)( compute.*)?", model(found[5])[1]).groups("")
+        words = f"wall/gran {words} primitive type 1 {found[2]}"
+        return "\n".join(f"fix {name} all {words} {at}{settings}" for name, at in planes if at != "NULL")
+
+    return WALL.sub(wall, re.sub(r"pair_coeff \S+ \S+ (.*)\n", pair, text))
+
+
+def run(host, text, folder, ranks=1):
+    """Output of a deck that must run, and its last rows by atom: end.txt without the id."""
+    code, out = outcome(host, text, folder, ranks)
+    assert code == 0 and "ERROR" not in out, out[-3000:]
+    end = folder / "end.txt"
+    return out, np.loadtxt(end, skiprows=9, ndmin=2)[:, 1:] if end.exists() else np.empty(0)
+
+
+def outcome(host, text, folder, ranks=1):
+    """Exit code and output of a deck."""
+    if host == "lammps":
+        return lammps(text, folder, ranks=ranks)
+    done = liggghts(folder, in_words_of_liggghts(text), ranks=ranks)
+    return done.code, done.text
+
+
+def values(host, out, name):
+    """A column of the thermo tables; LIGGGHTS prints f_heat[1] as heat[1]."""
+    return column(out, name[2:] if host == "liggghts" else name)
+
+
 HOLD = "fix hold all setforce 0 0 0\nfix motion all nve/sphere\n"
 END = "write_dump all custom end.txt id type x y z f_{} modify sort id format float %.17g\n"
 
@@ -20,7 +94,8 @@ def heat(text, words, *starts, walls=""):
     return text + "".join(f"fix_modify heat temperature {s}\n" for s in starts) + walls + HOLD
 
 
-def test_one_contact_conducts_by_its_area(tmp_path):
+@HOSTS
+def test_one_contact_conducts_by_its_area(host, tmp_path):
     """2 k a dT with a = sqrt(R* delta), 2/k = 1/k1 + 1/k2; a wall of its own conductivity beside it."""
     text = spheres((0, 0, 0), (0.0199, 0, 0), pair="hertz 1e7 0.3").replace("create_box 1", "create_box 2")
     text = text.replace("set group", "set atom 2 type 2\nset group")
@@ -28,16 +103,17 @@ def test_one_contact_conducts_by_its_area(tmp_path):
     plate = "fix plate all wall/ep xplane -0.0099 NULL hertz 1e7 0.3\n"
     text = heat(text, words, "1 1 300", "2 2 400", walls=plate) + "timestep 1e-3\nthermo_style custom step f_heat[1]"
     text += "\nthermo_modify format float %.17g\nthermo 1\nrun 1\n" + END.format("heat")
-    out, end = run(text, tmp_path)
+    out, end = run(host, text, tmp_path)
     mass, a, wall_radius = 7850 * math.pi / 6 * 0.02**3, math.sqrt(0.005 * 1e-4), math.sqrt(0.01 * 1e-4)
     between, into_wall = 2 * 15 * a * 100, 2 * (2 * 10 * 5 / 15) * wall_radius * (300 - 350)
-    assert column(out, "f_heat[1]")[-1] == pytest.approx(into_wall, rel=1e-6)
+    assert values(host, out, "f_heat[1]")[-1] == pytest.approx(into_wall, rel=1e-6)
     assert end[:, -1] - [300, 400] == pytest.approx(
         [1e-3 * (between - into_wall) / (mass * 500), -1e-3 * between / (mass * 400)], rel=1e-6
     )
 
 
-def test_a_released_contact_conducts_nothing(tmp_path):
+@HOSTS
+def test_a_released_contact_conducts_nothing(host, tmp_path):
     """Pressed to 0.5 mm, back to 0.25 mm, where a dent without force is left: no heat; at 0.49 mm a = a_max x^0.5."""
     start = spheres((0, 0, 0), (0, 0.0195, 0), pair=THORNTON)
     back = "group upper id 2\ndisplace_atoms upper move 0 {} 0 units box\nrun 1\n"
@@ -49,9 +125,9 @@ def test_a_released_contact_conducts_nothing(tmp_path):
     a_max = math.sqrt(R_star * alpha)
     x = 1 - 1e-5 * 4 * E_star * a_max / (3 * most)
     rate = 1e-6 * 2 * 10 * a_max * math.sqrt(x) * 100 / (7850 * math.pi / 6 * 0.02**3 * 500)
-    _, end = run(text.format(1e-5) + END.format("heat"), tmp_path / "pressed")
+    _, end = run(host, text.format(1e-5) + END.format("heat"), tmp_path / "pressed")
     assert end[:, -1] - [300, 400] == pytest.approx([rate, -rate], rel=1e-5)
-    _, end = run(text.format(2.5e-4) + END.format("heat"), tmp_path / "released")
+    _, end = run(host, text.format(2.5e-4) + END.format("heat"), tmp_path / "released")
     assert end[:, -1].tolist() == [300.0, 400.0]
 
 
@@ -64,8 +140,9 @@ LATTICES = {
 }
 
 
+@HOSTS
 @pytest.mark.parametrize("kind", LATTICES)
-def test_a_lattice_conducts_by_its_closed_form(kind, tmp_path):
+def test_a_lattice_conducts_by_its_closed_form(host, kind, tmp_path):
     """Flow between a hot and a cold wall through layers in series, and the conductivity of the layers."""
     of_layer, bonds, layers, cell, factor = LATTICES[kind]
     d, delta, k = 0.01, 2e-5, 20.0
@@ -96,11 +173,11 @@ neighbor 0.0005 bin
     step = 0.4 * 2000 * math.pi / 6 * d**3 / (12 * G)
     text += f"timestep {step!r}\nthermo_style custom step f_heat[1] f_heat[2]\nthermo 6000\n"
     text += "thermo_modify format float %.17g\nrun 6000\n"
-    out, end = run(text + END.format("heat"), tmp_path)
+    out, end = run(host, text + END.format("heat"), tmp_path)
     n = 4 * of_layer
     flow = 100 / (2 / (n * wall) + (count - 1) / (n * bonds * G))
-    assert column(out, "f_heat[2]")[-1] == pytest.approx(flow, rel=1e-4)
-    assert column(out, "f_heat[1]")[-1] == pytest.approx(-flow, rel=1e-4)
+    assert values(host, out, "f_heat[2]")[-1] == pytest.approx(flow, rel=1e-4)
+    assert values(host, out, "f_heat[1]")[-1] == pytest.approx(-flow, rel=1e-4)
     slope = np.polyfit(end[:, 3], end[:, -1], 1)[0]
     assert -flow / (2 * side) ** 2 / slope == pytest.approx(factor * G / distance, rel=1e-4)
 
@@ -113,21 +190,22 @@ SUMS = """variable heat atom mass*900*f_heat
 compute heat all reduce sum v_heat
 compute works all reduce sum f_EP_HISTORY0[1] f_EP_HISTORY0[4]
 variable flow equal f_heat[1]
-fix flow all vector 1 v_flow
-variable into equal sum(f_flow)*2e-6
+fix flow all ave/time 1 400 400 v_flow
+variable into equal f_flow*400*2e-6
 thermo_style custom step atoms ke c_heat c_works[1] c_works[2] v_into
 thermo_modify format float %.17g
 """
 
 
-def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_walls(tmp_path):
+@HOSTS
+def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_walls(host, tmp_path):
     """0.8 of the plastic and frictional work, in a bed that conducts, on one rank and on two."""
     text = BED.format(HOT.format(50)).split("thermo_style")[0] + "fix_modify heat temperature 1 9999 0\n" + SUMS
     found = []
     for ranks in (1, 2):
-        out, end = run(text + "run 400\n" + END.format("heat"), tmp_path / str(ranks), ranks=ranks)
+        out, end = run(host, text + "run 400\n" + END.format("heat"), tmp_path / str(ranks), ranks=ranks)
         heat_of_spheres, plastic, friction, into = (
-            column(out, name)[-1] for name in ("c_heat", "c_works[1]", "c_works[2]", "v_into")
+            values(host, out, name)[-1] for name in ("c_heat", "c_works[1]", "c_works[2]", "v_into")
         )
         assert min(plastic, friction) > 0 and abs(into) > 1e-3 * plastic
         assert heat_of_spheres + into == pytest.approx(0.8 * (plastic + friction), rel=1e-6)
@@ -135,18 +213,20 @@ def test_heat_of_a_bed_is_its_work_and_the_flow_from_the_walls(tmp_path):
     assert found[0] == pytest.approx(found[1], rel=1e-6)
 
 
+@needs_lammps
 def test_a_restart_file_continues_temperatures_to_the_bit(tmp_path):
     text = BED.format(HOT.format(50))
     whole = text + "fix_modify heat temperature 1 9999 0\nrun 200\nwrite_restart half\nrun 200\n" + END.format("heat")
-    _, end = run(whole, tmp_path)
+    _, end = run("lammps", whole, tmp_path)
     head = "comm_modify vel yes\nread_restart half\nneighbor 0.0004 bin\nneigh_modify delay 0\n"
-    _, again = run(head + text[text.index("fix floor") :] + "run 200\n" + END.format("heat"), tmp_path)
+    _, again = run("lammps", head + text[text.index("fix floor") :] + "run 200\n" + END.format("heat"), tmp_path)
     assert np.array_equal(end, again) and end[:, -1].max() > 0
 
 
 PAIR = spheres((0, 0, 0), (0.0199, 0, 0), pair="hertz 1e7 0.3")
 
 
+@HOSTS
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
@@ -159,10 +239,10 @@ PAIR = spheres((0, 0, 0), (0.0199, 0, 0), pair="hertz 1e7 0.3")
         (heat(PAIR, "0.9 10 500", "1 300"), "the words are temperature FROM TO T"),
         (
             heat(PAIR, "0.9 10 500", "1 2 300").replace("ep energies", "ep") + "run 1\n",
-            "comes from pair_style ep energies",
+            "the area of the contacts comes from",
         ),
     ],
 )
-def test_wrong_words_end_the_run_in_a_sentence(text, sentence, tmp_path):
-    code, out = lammps(text, tmp_path)
+def test_wrong_words_end_the_run_in_a_sentence(host, text, sentence, tmp_path):
+    code, out = outcome(host, text, tmp_path)
     assert code != 0 and sentence in out.replace("\n", " "), out[-800:]
