@@ -241,6 +241,9 @@ ROOMS = {
     "periodic along y": {"periodic": "y"},
     "open boundary": {"open_boundary": True, "gravity": "1.62 m/s^2"},
 }
+CONDUCTING = {"thermal_conductivity": "1 W/(m K)", "specific_heat": "800 J/(kg K)"}
+HEAT_FLOW = {"name": "q", "wall": "floor", "heat_flow": True, "title": "heat flow into the floor"}
+HEATS = {"no heat": [], "heat": [HEAT_FLOW]}
 SLOTS = {
     "room": ROOMS,
     "walls": WALLS,
@@ -256,6 +259,7 @@ SLOTS = {
     "rows": ROWS,
     "measure": MEASURES,
     "numerics": NUMERICS,
+    "heat": HEATS,
 }
 CHOICES = st.fixed_dictionaries({slot: st.sampled_from(list(options)) for slot, options in SLOTS.items()})
 
@@ -291,4 +295,11 @@ def case_of(chosen: dict[str, str]) -> dict:
         data["contact"] = data["contact"] | {"pairs": [*data["contact"].get("pairs", []), *pairs]}
     if measure := MEASURES[chosen["measure"]]:
         data["scene"]["measure"] = [{"name": "measured"} | measure]
-    return deepcopy(data)
+    data = deepcopy(data)
+    if flows := HEATS[chosen["heat"]]:
+        data["materials"] = {name: material | CONDUCTING for name, material in data["materials"].items()}
+        data["contact"]["heat_share"] = 0.8
+        for kind, start in (("wall", 350), ("fill", 300), ("body", 320)):
+            data["scene"][kind] = [x | {"temperature": f"{start + n} K"} for n, x in enumerate(data["scene"][kind])]
+        data["scene"]["row"] = [*data["scene"]["row"], *flows]
+    return data

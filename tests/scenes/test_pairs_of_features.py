@@ -11,7 +11,7 @@ import os
 import re
 import shutil
 import tomllib
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Literal, get_args, get_origin
 
 import numpy as np
@@ -92,7 +92,7 @@ def tries(few, **more):
 PLAIN = {slot: next(iter(options)) for slot, options in SLOTS.items()}
 KINDS = "cases of kinds are drawn by tests/fuzz/test_inputs.py, their runs are those of parts"
 ALONE = "judges a bed that it is made for: test_scene_checks.py"
-HEAT, CURRENT = "in LAMMPS alone: test_heat_scene.py", "read from frames: test_currents.py"
+CURRENT = "read from frames: test_currents.py"
 WALLS = ("Plane", "Plate", "Box", "Cylinder", "Cone", "Revolved", "Stl")
 NOT_DRAWN = {
     "Keys": KINDS,
@@ -110,12 +110,8 @@ NOT_DRAWN = {
     "SceneCase": {"measured": "numbers beside those of a press: test_press.py"},
     "MeasuredDensities": "numbers beside those of a press: test_press.py",
     "LawMaterial": {"surface_energy": "gives the work of adhesion, which is drawn: tests/decks/test_adhesive_case.py"}
-    | dict.fromkeys(("thermal_conductivity", "specific_heat"), HEAT)
     | {"electrical_conductivity": CURRENT},
-    "Contact": {"heat_share": HEAT},
-    "Row": {"heat_flow": HEAT},
-    **{part: {"temperature": HEAT} for part in ("Fill", "FileFill", "SingleSphere")},
-    **{f"{kind}Wall": {"temperature": HEAT, "potential": CURRENT} for kind in WALLS},
+    **{f"{kind}Wall": {"potential": CURRENT} for kind in WALLS},
 }
 CHOOSES = ("kind", "model", "tangential")  # keys each value of which is a model of its own
 
@@ -161,8 +157,8 @@ def features_in(value):
 def test_all_that_a_case_can_name_is_drawn(folder):
     drawn = set()
     for slot, options in SLOTS.items():
-        for option in options:
-            plainly = PLAIN | {slot: option}
+        for option, heat in product(options, SLOTS["heat"]):
+            plainly = PLAIN | {"heat": heat, slot: option}
             drawn |= set(features_in(parse(case_of(plainly), folder / "case.toml")))
     left_out = features_of(SceneCase, set()) - drawn
     reasons = [(t, k) for t, keys in NOT_DRAWN.items() if isinstance(keys, dict) for k in keys]
@@ -295,7 +291,8 @@ def test_other_units_make_the_same_deck(chosen, folder):
 @given(chosen=CHOICES, other=CHOICES)
 def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
     """The tables of one case, set as the values of a sweep over another one, give the one."""
-    base, wanted = case_of(chosen), case_of(other | {slot: chosen[slot] for slot in ("room", "rows")})
+    assume(not sentences_against(chosen))
+    base, wanted = case_of(chosen), case_of(other | {slot: chosen[slot] for slot in ("room", "rows", "heat")})
     wanted = {key: wanted[key] if key == "scene" else table for key, table in base.items()}
     wanted["scene"].setdefault("measure", [])
     keys = [f"scene.{key}" for key in ("wall", "fill", "body", "phase", "measure")]
@@ -357,7 +354,7 @@ THROUGH_FACES = {"room": "periodic", "bodies": "table", "measure": "porosity", "
 @example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"}, ranks=1)
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
 @example(chosen=PLAIN | {"amount": "thrown later", "phases": "until rest"}, ranks=1)
-@example(chosen=PLAIN | RUBBED, ranks=2)
+@example(chosen=PLAIN | RUBBED | {"heat": "heat"}, ranks=2)
 @example(chosen=PLAIN | {"mixture": "log-normal", "bodies": "bodies that overlap", "numerics": "ranks"}, ranks=2)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
@@ -380,7 +377,7 @@ def test_yade_runs_what_is_drawn(chosen, folder):
 @tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
 @example(chosen=PLAIN | {"room": "periodic along y", "bodies": "bodies that overlap", "output": "energy"}, ranks=2)
-@example(chosen=PLAIN | RUBBED, ranks=1)
+@example(chosen=PLAIN | RUBBED | {"heat": "heat"}, ranks=1)
 @given(chosen=CHOICES, ranks=RANKS)
 def test_lammps_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
@@ -399,12 +396,13 @@ ALIKE = SLOTS | {
 @needs_lammps
 @pytest.mark.liggghts
 @tries(3, phases=[Phase.explicit, Phase.generate])
-@example(chosen=PLAIN | {"dashpot": "dashpot", "walls": "open box", "phases": "wall turns", "output": "frames"})
+@example(chosen=PLAIN | {"dashpot": "dashpot", "walls": "open box", "phases": "wall turns", "heat": "heat"})
 @given(chosen=st.fixed_dictionaries({slot: st.sampled_from(sorted(options)) for slot, options in ALIKE.items()}))
 def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
     assume(not sentences_against(chosen))
     data = case_of(chosen)
-    data["scene"]["fill"] = [{"name": "heap", "file": "heap.csv"}]
+    warm = {key: data["scene"]["fill"][0][key] for key in ("temperature",) if chosen["heat"] == "heat"}
+    data["scene"]["fill"] = [{"name": "heap", "file": "heap.csv"} | warm]
     places = []
     for tool in ("lammps", "liggghts"):
         try:
@@ -413,7 +411,7 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
             assert_names_who_takes_it(tool, folder / "heap.toml", error)
             return
         spheres = outcome.results.particles.set_index(["step", "id"]).sort_index()
-        places.append(spheres[["x", "y", "z", "vx", "vy", "vz"]])
+        places.append(spheres[["x", "y", "z", "vx", "vy", "vz", *warm]])
     assert places[0].index.equals(places[1].index)
     # m and m/s. A sphere that moves by 0.5 % of its radius in the step in which it parts has no last pull in LIGGGHTS
     limit = 1e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6

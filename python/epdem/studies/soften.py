@@ -96,7 +96,7 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
         ratio = material.get("yield_ratio")
         if "hardness" in material and strength:
             numbers = law_numbers(law["name"], {key: value for key, value in law.items() if key != "name"})
-            solid = Material.model_validate(material)
+            solid = Material.model_validate({k: v for k, v in material.items() if k in Material.model_fields})
             ratio = yield_ratio_of(numbers, numbers.strength(name, solid), solid)
         if ratio is not None:
             texts["materials", name, "yield_ratio"] = float(f"{ratio * factor**OVERLAP_POWER:.15g}")

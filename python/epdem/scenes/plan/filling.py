@@ -137,7 +137,8 @@ def _insertion(scene: Parts, f: Fill, key: str, count: int) -> Insertion:
     period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
     if count / f.rate > phase.duration:
         raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
-    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period)
+    velocity, T = (vx, vy, vz), f.temperature
+    return Insertion(f.particles, count, f.region, key, phase.name, velocity, f.rate, period, temperature=T)
 
 
 def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
