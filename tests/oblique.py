@@ -4,6 +4,7 @@
 theta is the impact angle from the normal; f = P_t/P_n the ratio of impulses; w the spin, positive as friction turns it.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from epdem.theory.hertz import Hertz
 from epdem.theory.numerics import Array, Real, number, poisson_ratio
 from epdem.theory.partial_slip import rebound
 from epdem.theory.restitution import e_n as normal_restitution
+from epdem.theory.viscous import damping_ratio
 
 STEEPEST = 1.5707  # of impact angles [rad]: just below pi/2
 
@@ -120,3 +122,29 @@ def maw_barber_fawcett(psi_1: Real, *, kappa: float, steps: int = 2000) -> Array
         steps=steps,
     )
     return 1e3 * after
+
+
+def one_spring(slip, *, E_star, G_star, R, mass, mu, dt, speed=1.0, e_n=1.0, e_t=1.0, pulls=False):
+    """(velocity along the plane, spin, velocity off it, f/mu) after impacts of Hertz contacts, in steps of `dt`.
+
+    Cundall and Strack: a spring 8 G* a is cut off at mu F, with a dashpot inside of the limit; e_n, e_t: restitutions
+    of both dashpots; slip [m/s]: velocities along the plane, an array. The arm of the torque is R - delta/2. pulls: the
+    dashpots of LIGGGHTS's own hertz: one pulls, the other acts wherever the spring sticks, without a limit.
+    """
+    beta, zeta = (-math.log(e) / math.hypot(math.log(e), math.pi) for e in (e_t, e_n))
+    zeta, c = zeta if pulls or e_n == 1.0 else float(damping_ratio(e_n)), 2 * math.sqrt(5 / 6)
+    z, v, u = R, -speed, np.array(slip, float)
+    w, s, along, across = (np.zeros(u.shape) for _ in range(4))
+    while (delta := R - z) >= 0:
+        a = math.sqrt(R * delta)
+        F = 4 / 3 * E_star * a * delta - c * zeta * math.sqrt(2 * E_star * a * mass) * v
+        F, k_t, arm = F if pulls else max(F, 0.0), 8 * G_star * a, R - delta / 2
+        most, patch = mu * abs(F), u - arm * w
+        spring = np.clip(k_t * (s + patch * dt), -most, most)
+        s = spring / k_t if k_t > 0 else 0 * s
+        T = spring + c * beta * math.sqrt(k_t * mass) * patch
+        T = np.where(np.abs(spring) == most, spring, T) if pulls else np.clip(T, -most, most)
+        along, across = along + T * dt, across + F * dt
+        v, u, w = v + F / mass * dt, u - T / mass * dt, w + T * arm / (0.4 * mass * R * R) * dt
+        z += v * dt
+    return u, w, v, along / across / mu

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from lammps_decks import DUMP, THORNTON, bed, run, spheres
+from lammps_decks import DUMP, THORNTON, bed, run
 from plugin_decks import DUMP as FRAMES
 from plugin_decks import Bodies, E, contact, good, head, materials, per_pair
 
@@ -61,24 +61,3 @@ def test_no_row_of_a_table_has_friction_above_its_limit_and_pieces_of_a_run_are_
         assert (F_t <= MU * F_n * (1 + 1e-9) + 1e-12 * F_n.max()).all()
         assert (F_t > 0.999 * MU * F_n).sum() > 3
     assert off[0] < 3e-3 and off[1] < 0.5 * off[0]
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_sphere_that_touches_a_wall_and_slides_before_the_first_step_has_coulombs_friction(engine, tmp_path):
-    """It slides to the end, so that its loss of speed is mu times the speed with which it leaves the wall."""
-    R, overlap, speed = 1e-3, 1e-7, 0.5
-    if engine == "lammps":
-        law = f"hertz 1e8 0.3 tangential history {MU} restitution {E_N}"
-        deck = spheres((0, 0, R - overlap), pair=law, diameter=2 * R) + f"fix floor all wall/ep zplane 0.0 NULL {law}\n"
-        deck += f"velocity all set {speed} 0 0\nfix motion all nve/sphere\ntimestep 1e-7\nrun 3000\n"
-        v = run(deck + DUMP, tmp_path)[1][0, 4:7]
-    else:
-        places = np.array([[0, 0, R - overlap], [0.01, 0, 0.01], [-0.01, 0, 0.01]])  # LIGGGHTS needs all three types
-        body = Bodies(np.array([3, 2, 1]), np.full(3, R), places, np.array([[speed, 0, 0]] + [[0.0] * 3] * 2))
-        text = head() + "read_data box.data\nneighbor 5e-4 bin\n" + materials("ep/hertz", friction=MU)
-        text += per_pair("coefficientRestitution", E_N)
-        text += contact("ep/hertz", wall="primitive", settings="viscous on")
-        text += "timestep 1e-8\nfix move all nve/sphere\nthermo_modify lost error norm no\n"
-        text += "run 3000\n" + FRAMES.format(every=1) + "run 0\n"
-        v = good(tmp_path, text, files={"box.data": body.data([(-0.02, 0.02)] * 3)}).last[0, 4:7]
-    assert v[2] > 0 and speed - v[0] == pytest.approx(MU * v[2], rel=1e-6)

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from plugin_adhesion import BOX, EDGE, TIP, R, deck, mass, spheres, theory, triangles, walls
-from plugin_decks import ADHESIVE, GAMMA, P_Y, contact, good, materials, per_pair, plate, run
+from plugin_decks import ADHESIVE, P_Y, contact, good, materials, per_pair, plate, run
 from test_plugin_energy import BOX as CELL
 from test_plugin_energy import SIDES, gas
 from test_plugin_launch import deck as plain_deck
@@ -27,31 +27,6 @@ def test_spheres_stick_up_to_the_sticking_speed_within_one_percent(tmp_path, law
     _, v, _ = walls(tmp_path, law, V_s * share, steps_in_contact=200)
     parted = (v[-1] == v[-3]) & (v[-1] > 0)
     assert np.array_equal(parted, share > 1)
-
-
-@every_law
-@pytest.mark.parametrize("deepest", [0.0, 30.0])
-def test_pull_off_force_by_slow_separation(tmp_path, law, deepest):
-    """3/2 pi Gamma R_p to 1e-6, of a sphere that is pressed down to some gaps' length and drawn away."""
-    c = theory(law)
-    gap = float(-c.fold_overlap)
-    down = (deepest + 1.0) * gap
-    branch, dent = c.branch(c.radius(down))
-    up = down - float(dent + branch.fold_overlap) + 0.1 * gap
-    fine = gap / 2000
-    text = deck(
-        law,
-        wall="primitive",
-        dt=1e-6,
-        every=1,
-        body=f"fix m all move linear 0 0 {-down / 20 / 1e-6!r}\nrun 20\nunfix m\n"
-        f"fix m all move linear 0 0 {fine / 1e-6!r}\nrun {int(up / fine)}\n",
-    )
-    bodies = spheres([[0, 0, R]], [[0, 0, 0]])
-    frames = good(tmp_path, text, files={"box.data": bodies.data(BOX)}).frames()[1]
-    pull = frames[25:, 0, 9].min()
-    assert pull == pytest.approx(-1.5 * np.pi * GAMMA[0, 1] * float(branch.R_star), rel=1e-6)
-    assert frames[-1, 0, 9] == 0
 
 
 @every_law
@@ -165,29 +140,6 @@ def test_the_energy_balance_closes_with_what_adhesion_takes(tmp_path, law):
     assert plastic[-1] == 0 if law == "jkr" else plastic[-1] > 0.05 * kinetic[0]
     two = books(tmp_path / "two", law, 2000, ranks=2)
     assert np.allclose(rows[: len(two) - 1], two[:-1], rtol=1e-11, atol=1e-16)
-
-
-@every_law
-def test_the_friction_of_an_attached_sphere_is_limited_by_the_force_and_twice_its_pull_off(tmp_path, law):
-    """Sliding at rest on the wall: mu (F + 2 P_po), F = 0 where it would lie by itself."""
-    c = theory(law)
-    a = (3 * c.c * c.R_star / 2) ** (2 / 3)  # F = 0
-    lies = float(c.overlap(a))
-    text = deck(
-        law,
-        wall="primitive",
-        dt=1e-7,
-        friction=0.4,
-        tangential="history",
-        body="fix m all move linear 20.0 0 0\nrun 400\n",
-    )
-    bodies = spheres([[0, 0, R - lies]], [[0, 0, 0]])
-    frames = good(tmp_path, text, files={"box.data": bodies.data(BOX)}).frames()[1]
-    if law == "jkr":
-        assert abs(frames[-1, 0, 9]) < 1e-9 * c.pull_off_force
-    branch, _ = c.branch(c.radius(lies))
-    limit = 0.4 * (frames[-1, 0, 9] + 2 * float(branch.pull_off_force))
-    assert -frames[-1, 0, 7] == pytest.approx(limit, rel=1e-9)
 
 
 def test_surface_energies_give_the_work_of_adhesion(tmp_path):

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, NU, YIELDING, Bodies, E, contact, good, head, materials, per_pair, plate
+from plugin_decks import YIELDING, Bodies, contact, good, head, materials, plate
 
 pytestmark = pytest.mark.liggghts
 
@@ -159,35 +159,3 @@ def test_an_evaluation_that_is_not_kept_leaves_no_trace(tmp_path, law):
     plain = start(tmp_path / "plain", deck(law, wall="primitive", steps=40) + end).last
     other = start(tmp_path / "detour", deck(law, wall="primitive", steps=40) + detour + end).last
     assert np.allclose(other, plain, rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("wall", ["primitive", "mesh"])
-@pytest.mark.parametrize("law", LAWS)
-def test_forces_of_law_and_cohesion_of_all_contacts_add_up(tmp_path, law, wall):
-    """Must 11: a sphere on the wall and beside another one, both contacts below yield: Hertz less cohesion, times two.
-
-    sjkr pulls with its energy density times the area of the overlap's lens. 1e-9: a rounding of the coordinates, 1e-18,
-    over the overlap, 1e-7.
-    """
-    density, delta, r = 1e7, 1e-7, 5e-3
-    x = np.array([[0, 0, r - delta], [2 * r - delta, 0, r - delta]])
-    body = Bodies(np.array([1, 2]), np.full(2, r), x, np.zeros((2, 3)))
-    text = (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\n"
-        + materials("ep/any")
-        + per_pair("cohesionEnergyDensity", density)
-        + contact(f"ep/{law}", wall=wall, models="cohesion sjkr", tangential="off")
-        + "timestep 1e-8\nfix move all nve/sphere\ndump d all custom 1 out.bin id fx fy fz\nrun 0\n"
-    )
-    files = {"box.data": body.data(BOX), "plate.stl": plate(x=(-0.045, 0.046), y=(-0.04, 0.043))}
-    force = good(tmp_path, text, files=files).last[:, 1:]
-
-    def hertz(i, j, R):
-        E_star = 1 / ((1 - NU[i] ** 2) / E[i] + (1 - NU[j] ** 2) / E[j])
-        return 4 / 3 * E_star * np.sqrt(R) * delta**1.5
-
-    d = 2 * r - delta
-    beside = hertz(0, 1, r / 2) - density * np.pi / 4 * (4 * r * r - d * d)
-    below = [hertz(k, 1, r) - density * np.pi * (r * r - (r - delta) ** 2) for k in (0, 1)]
-    assert np.allclose(force, [[-beside, 0, below[0]], [beside, 0, below[1]]], rtol=1e-9, atol=1e-12)

@@ -173,23 +173,6 @@ def test_all_combinations_run_for_pair_and_wall(every, tmp_path):
     assert not failed and not any(warned for *_, warned in outcomes)
 
 
-def test_rolling_friction_acts_because_kn_is_set(tmp_path):
-    """Must 3: without sidata.kn rolling_friction cdt changes nothing."""
-    spin = (
-        materials("ep/any")
-        + "fix r all property/global coefficientRollingFriction peratomtypepair 3"
-        + " 0.3" * 9
-        + "\n"
-    )
-
-    def final(name, settings):
-        text = deck(models=settings, properties=spin, steps=100)
-        text += "dump d all custom 1 out.bin id omegax omegay omegaz\nrun 0\n"
-        return started(tmp_path / name, text).last
-
-    assert not np.array_equal(final("on", "rolling_friction cdt"), final("off", "rolling_friction off"))
-
-
 def test_the_deck_of_the_user_page_prints_what_the_page_says(tmp_path):
     page = (Path(__file__).resolve().parents[2] / "docs" / "liggghts.md").read_text()
     text = re.search(r"```deck\n(.*?)```", page, re.S).group(1)

@@ -5,55 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from yade_native import ROOT, result, title, yade
-
-from epdem.base.declarations import declarations
+from yade_native import ROOT, result, yade
 
 pytestmark = pytest.mark.yade("module")
-
-SPRING = """
-R, mu, v_n, dt = 0.01, 0.3, 1.0, 2e-8
-steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=np.arctan(mu))
-O.materials.append(steel)
-O.bodies.append(wall(0, axis=2, material=steel))
-tangents = [0.0, 0.2, 0.5, 1.0, 3.0]
-for k, t in enumerate(tangents):
-    O.bodies.append(sphere((0.1 * k, 0, R), R, material=steel))
-    O.bodies[-1].state.vel = (v_n * t, 0, -v_n)
-O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
-    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()], [Law2_ScGeom_EpPhys_Hertz()]),
-    NewtonIntegrator(damping=0)]
-O.dt = dt
-for _ in range(5000):
-    O.step()
-s = [O.bodies[k + 1].state for k in range(len(tangents))]
-json.dump({"v": [x.vel[0] for x in s], "w": [x.angVel[1] for x in s], "n": O.interactions.countReal()},
-          open("result.json", "w"))
-"""
-
-
-def test_friction_is_one_spring_up_to_coulombs_limit(tmp_path):
-    """Against the law of Cundall and Strack, integrated here: stretch of the spring, arm of the torque R - delta/2."""
-    found = result(SPRING, tmp_path)
-    R, mu, dt, E, nu = 0.01, 0.3, 2e-8, 208e9, 0.3
-    E_star, G_star = E / (1 - nu**2) / 2, E / (2 * (1 + nu)) / (2 - nu) / 2
-    mass = 7850 * 4 / 3 * math.pi * R**3
-    assert found["n"] == 0
-    for tangent, v_end, w_end in zip([0.0, 0.2, 0.5, 1.0, 3.0], found["v"], found["w"], strict=True):
-        z, v, u, w, s = R, -1.0, tangent, 0.0, 0.0
-        while True:
-            delta = R - z
-            if delta < 0:
-                break
-            a = math.sqrt(R * delta)
-            F, k_t, arm = 4 / 3 * E_star * a * delta, 8 * G_star * a, R - delta / 2
-            s += (u - arm * w) * dt
-            T = min(max(k_t * s, -mu * F), mu * F)
-            s = T / k_t if k_t > 0 else 0.0
-            v, u, w = v + F / mass * dt, u - T / mass * dt, w + T * arm / (0.4 * mass * R * R) * dt
-            z += v * dt
-        assert v_end == pytest.approx(u, abs=1e-9)
-        assert w_end == pytest.approx(w, abs=1e-7)
 
 
 SCENE = """
@@ -253,70 +207,6 @@ def test_two_threads_give_the_forces_of_one(tmp_path):
         assert two["energy"][name] == pytest.approx(value, rel=1e-9, abs=1e-12)
 
 
-ENERGY = """
-O.trackEnergy = True
-R = 0.01
-steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9, yieldStress=1e9)
-O.materials.append(steel)
-O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, R), R, material=steel)])
-ball = O.bodies[1].state
-ball.vel = (0, 0, -10)
-O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
-    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()], [Law2_ScGeom_EpPhys_{law}()]),
-    NewtonIntegrator(damping=0)]
-O.dt = 1e-8
-before = 0.5 * ball.mass * ball.vel.squaredNorm()
-middle, of_contact = [], 0.0
-for k in range(20000):
-    O.step()
-    if O.interactions.countReal():
-        of_contact = O.interactions[0, 1].phys.plasticWork
-        if k == 1500:
-            middle = [O.energy["contactElastic"] + O.energy["plasticWork"], O.interactions[0, 1].phys.elasticEnergy,
-                      0.5 * ball.mass * ball.vel.squaredNorm()]
-    elif k > 10:
-        break
-json.dump({{"before": before, "after": 0.5 * ball.mass * ball.vel.squaredNorm(), "plastic": O.energy["plasticWork"],
-           "contact": of_contact, "middle": middle}}, open("result.json", "w"))
-"""
-
-
-@pytest.mark.parametrize("law", [title(name) for name, law in declarations().items() if law.yields and not law.adheres])
-def test_plastic_work_is_in_the_energies_of_yade_and_of_the_contact(law, tmp_path):
-    found = result(ENERGY.format(law=law), tmp_path)
-    lost = found["before"] - found["after"]
-    assert found["plastic"] == pytest.approx(lost, rel=1e-4) == pytest.approx(found["contact"], rel=1e-4)
-    stored, elastic, kinetic = found["middle"]
-    assert stored == pytest.approx(found["before"] - kinetic, rel=2e-2) and elastic > 0
-
-
-ROLL = """
-R, mu_r, g, v = 0.01, 0.05, 9.81, 0.2
-steel = EpMat(young=1e8, poisson=0.3, density=2500, frictionAngle=0.5, rollingFriction=mu_r)
-O.materials.append(steel)
-O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, R), R, material=steel)])
-ball = O.bodies[1].state
-E_star, weight = 0.5e8 / (1 - 0.09), ball.mass * g
-ball.pos = (0, 0, R - (0.75 * weight / (E_star * R**0.5)) ** (2 / 3))  # at rest on the wall
-ball.vel, ball.angVel = (v, 0, 0), (0, v / R, 0)
-O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=0.1 * R),
-    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()],
-                    [Law2_ScGeom_EpPhys_Hertz(rolling={rolling!r})]),
-    NewtonIntegrator(damping=0, gravity=(0, 0, -g))]
-O.dt = 2e-6
-O.run(50000, wait=True)
-json.dump([ball.vel[0], ball.angVel[1] * R, O.time], open("result.json", "w"))
-"""
-
-
-def test_a_sphere_that_rolls_slows_down_as_theory_says(tmp_path):
-    """A torque mu_r F R about the contact of a sphere that rolls without slip: m a (1 + 2/5) = mu_r m g."""
-    v, w, t = result(ROLL.format(rolling="cdt"), tmp_path / "cdt")
-    assert 0.2 - v == pytest.approx(5 / 7 * 0.05 * 9.81 * t, rel=5e-3) and w == pytest.approx(v, rel=1e-3)
-    v, w, _ = result(ROLL.format(rolling="off"), tmp_path / "off")
-    assert v == pytest.approx(0.2, rel=1e-3) == pytest.approx(w, rel=1e-3)
-
-
 CELL = """
 def pair(periodic, shear=0.0):
     R = 0.01
@@ -429,37 +319,6 @@ json.dump([p.tangensOfFrictionAngle, p.en, p.es, p.rollingFriction, p.workOfAdhe
            "p_y of thornton" in EpMat.yieldPressure.__doc__], open("result.json", "w"))
 """
 )
-
-
-COHESION = """
-def forces(cohesion, density):
-    steel = EpMat(young=1e9, poisson=0.3, density=7850)
-    O.reset()
-    O.materials.append(steel)
-    O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.0098), 0.01, material=steel),
-                     sphere((0, 0, 0.0256), 0.006, material=steel)])
-    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
-                        [Ip2_EpMat_EpMat_EpPhys(cohesionEnergyDensity=density)],
-                        [Law2_ScGeom_EpPhys_Hertz(cohesion=cohesion)]), NewtonIntegrator(damping=0)]
-    O.dt = 1e-12
-    O.step()
-    return [[O.forces.f(k)[2] for k in range(3)], O.interactions[1, 2].phys.normalForce[2]]
-
-json.dump([forces("off", 1e6), forces("sjkr", 1e6), forces("sjkr2", 1e6)], open("result.json", "w"))
-"""
-
-
-def test_cohesion_pulls_by_its_energy_density_over_the_area_of_the_overlap(tmp_path):
-    """Overlaps of 0.2 mm. sjkr: the area of the circle in which the surfaces meet; sjkr2: 4 pi R* overlap."""
-    (off, at_rest), (sjkr, pressed), (sjkr2, _) = result(COHESION, tmp_path)
-    toward = (0.01**2 - 0.006**2 + 0.0158**2) / (2 * 0.0158)  # from the centre of the sphere of 10 mm to the circle
-    circles = [math.pi * (0.01**2 - 0.0098**2), math.pi * (0.01**2 - toward**2)]
-    rings = [2 * math.pi * 0.01 * 2e-4, 4 * math.pi * 0.00375 * 2e-4]  # of a wall LIGGGHTS takes half
-    for found, (at_wall, between) in ((sjkr, circles), (sjkr2, rings)):
-        pull = [1e6 * at_wall, 1e6 * (between - at_wall), -1e6 * between]
-        assert np.subtract(found, off) == pytest.approx(pull, rel=1e-9)
-    assert abs(at_rest) - abs(pressed) == pytest.approx(1e6 * circles[1], rel=1e-9)
 
 
 def test_values_of_pairs_come_from_matchmakers_and_all_attributes_are_readable(tmp_path):

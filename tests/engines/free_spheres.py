@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Spheres above a plane in every host: one scene, one adapter per host, the same table of all steps."""
+
+import json
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from hosts import CLASSES, LAMMPS, LIGGGHTS
+from lammps_decks import run as run_lammps
+from plugin_decks import good, plate
+from yade_native import title, yade
+
+from epdem.base.declarations import declarations
+
+HOSTS = [LIGGGHTS, LAMMPS, CLASSES]
+PLACE, VELOCITY, SPIN, FORCE, TORQUE = (slice(k, k + 3) for k in range(0, 15, 3))
+PLASTIC, ELASTIC = 15, 16  # energies of a sphere
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Spheres [SI], and the plane z = 0 of the material with the number `plane`.
+
+    materials: E, nu, density, and the parameters of the law by property. moves: (velocity, steps) of all spheres, one
+    after the other, in place of free flight. restitution: of both dashpots.
+    """
+
+    law: str
+    materials: list[dict[str, float]]
+    x: Any
+    v: Any
+    dt: float
+    steps: int = 0
+    w: Any = None
+    radius: Any = 1.0
+    kinds: Any = 0
+    plane: int | None = None
+    moves: tuple = ()
+    tangential: str = "off"
+    friction: float = 0.0
+    rolling: tuple[str, float] = ("off", 0.0)
+    cohesion: tuple[str, float] = ("off", 0.0)
+    restitution: float | None = None
+    compaction: bool = False
+    gravity: float = 0.0
+    every: int = 1
+    mesh: bool = False  # LIGGGHTS: the plane is of triangles
+    loop: str = ""  # EPDEM_LOOP of LIGGGHTS
+
+    def spheres(self):
+        """Lists of kinds, radii, places, velocities, spins."""
+        x = np.asarray(self.x, float)
+        n = len(x)
+        w = np.zeros((n, 3)) if self.w is None else self.w
+        rows = [np.broadcast_to(a, shape) for a, shape in ((self.kinds, n), (self.radius, n), (self.v, (n, 3)))]
+        return [a.tolist() for a in (*rows[:2], x, rows[2], np.asarray(w, float))]
+
+    def reach(self):
+        """Half the side of a cube that holds all spheres at all times [m]."""
+        way = [steps * np.abs(v).max() for v, steps in self.moves or [(self.v, self.steps)]]
+        return float(np.abs(self.x).max() + 5 * np.max(self.radius) + self.dt * sum(way))
+
+    def skin(self):
+        """Of neighbour lists [m]."""
+        return 0.3 * float(np.min(self.radius))
+
+    def runs(self):
+        """Lines of LIGGGHTS and LAMMPS: free flight, or the moves."""
+        moved = "fix go all move linear {!r} {!r} {!r}\nrun {}\nunfix go\n"
+        free = f"fix move all nve/sphere\nrun {self.steps}\n"
+        return "".join(moved.format(*map(float, v), n) for v, n in self.moves) or free
+
+    def names(self):
+        """Properties of the law that the materials have, in the order of its declaration."""
+        return [p.property for p in declarations()[self.law].parameters if p.property in self.materials[0]]
+
+    def data(self, kinds, style=""):
+        """A data file of LIGGGHTS or LAMMPS."""
+        kind, radius, x, v, w = self.spheres()
+        r, rows, speeds = self.reach(), [], []
+        for k, i in enumerate(kind):
+            own = 2 * radius[k], self.materials[i]["density"], *x[k]
+            rows.append(f"{k + 1} {i + 1} {' '.join(map(repr, own))}")
+            speeds.append(f"{k + 1} {' '.join(map(repr, (*v[k], *w[k])))}")
+        box = [f"{-r!r} {r!r} {c}lo {c}hi" for c in "xyz"]
+        head = ["x", "", f"{len(rows)} atoms", f"{kinds} atom types", "", *box, "", f"Atoms{style}", ""]
+        return "\n".join([*head, *rows, "", "Velocities", "", *speeds, ""])
+
+
+COLUMNS = "x y z vx vy vz omegax omegay omegaz fx fy fz tqx tqy tqz"
+
+
+def liggghts(folder, s):
+    n = len(s.materials)
+    (rolling, mu_r), (cohesion, density) = s.rolling, s.cohesion
+    slip = s.tangential.replace("partial", "ep/partial")
+    words = f"model ep/{s.law} tangential {slip} cohesion {cohesion} rolling_friction {rolling}"
+    settings = "computePlasticWork on" + " compaction on" * s.compaction + " viscous on" * (s.restitution is not None)
+    per_type = {"youngsModulus": "E", "poissonsRatio": "nu"} | {name: name for name in s.names()}
+    values = {name: f"peratomtype {' '.join(repr(m[key]) for m in s.materials)}" for name, key in per_type.items()}
+    pairs = {"coefficientFriction": s.friction, "coefficientRollingFriction": mu_r, "cohesionEnergyDensity": density}
+    pairs |= {"coefficientRestitution": s.restitution or 1.0}
+    values |= {name: f"peratomtypepair {n}{f' {value!r}' * n * n}" for name, value in pairs.items()}
+    if "workOfAdhesion" in values:
+        means = [sqrt(a["workOfAdhesion"] * b["workOfAdhesion"]) for a in s.materials for b in s.materials]
+        values["workOfAdhesion"] = f"peratomtypepair {n} {' '.join(map(repr, means))}"
+    plane = f"primitive type {(s.plane or 0) + 1} zplane 0.0"
+    text = "atom_style granular\natom_modify map array sort 0 0\nboundary f f f\nnewton off\n"
+    text += "communicate single vel yes\nunits si\nhard_particles yes\nsoft_particles yes\nread_data spheres.data\n"
+    text += f"neighbor {s.skin()!r} bin\nneigh_modify delay 0\n"
+    text += "".join(f"fix {name} all property/global {name} {value}\n" for name, value in values.items())
+    text += f"pair_style gran {words} {settings}\npair_coeff * *\n"
+    if s.mesh:
+        text += f"fix plate all mesh/surface file plate.stl type {s.plane + 1}\n"
+        plane = "mesh n_meshes 1 meshes plate"
+    if s.plane is not None:
+        text += f"fix floor all wall/gran {words} {plane} {settings}\n"
+    text += f"fix fall all gravity {s.gravity!r} vector 0 0 -1\n" * (s.gravity > 0)
+    text += f"timestep {s.dt!r}\nthermo_modify lost error norm no\n"
+    text += f"dump d all custom {s.every} out.bin id {COLUMNS} f_plasticWork f_elasticEnergy\n" + s.runs()
+    side = 0.9 * s.reach()
+    files = {"spheres.data": s.data(n), "plate.stl": plate((-side, 0.95 * side), (-side, 0.93 * side))}
+    return good(folder, text, files=files, env={"EPDEM_LOOP": s.loop} if s.loop else None).frames()[1][:, :, 1:]
+
+
+def lammps(folder, s):
+    end = f" tangential {s.tangential} {s.friction!r}" * (s.tangential != "off")
+    end += "".join(
+        f" {key} {name} {x!r}"
+        for key in ("rolling", "cohesion")
+        for name, x in [getattr(s, key)]
+        if x and name != "off"
+    )
+    end += f" restitution {s.restitution!r}" * (s.restitution is not None) + " compaction on" * s.compaction
+    words = [" ".join([s.law, *(repr(m[key]) for key in ("E", "nu", *s.names()))]) + end for m in s.materials]
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "spheres.data").write_text(s.data(len(words), " # sphere"))
+    text = "units si\natom_style sphere\natom_modify map array sort 0 0\nboundary f f f\ncomm_modify vel yes\n"
+    text += "read_data spheres.data\npair_style ep energies\n"
+    text += "".join(f"pair_coeff {k} {k} {w}\n" for k, w in enumerate(words, 1))
+    text += f"neighbor {s.skin()!r} bin\nneigh_modify delay 0\n"
+    text += f"fix floor all wall/ep zplane 0 NULL {words[s.plane]}\n" if s.plane is not None else ""
+    text += f"fix fall all gravity {s.gravity!r} vector 0 0 -1\n" * (s.gravity > 0) + f"timestep {s.dt!r}\n"
+    text += f"dump d all custom {s.every} frames.txt id {COLUMNS} f_EP_HISTORY0[1] f_EP_HISTORY0[2]\n"
+    run_lammps(text + f"dump_modify d sort id header no format float %.17g\n{s.runs()}", folder)
+    return np.loadtxt(folder / "frames.txt").reshape(-1, len(s.x), 18)[:, :, 1:]
+
+
+SCRIPT = """
+s = json.load(open("scene.json"))
+for m in s["materials"]:
+    O.materials.append(EpMat(**m))
+if s["plane"] is not None:
+    O.bodies.append(wall(0, axis=2, material=s["plane"]))
+moving = []
+for kind, r, p, v, w in zip(*s["spheres"]):
+    b = sphere(p, r, material=kind)
+    b.state.vel, b.state.angVel = v, w
+    b.state.blockedDOFs = "xyzXYZ" if s["moves"] else ""
+    moving.append(O.bodies.append(b))
+frames = []
+def record():
+    elastic = dict.fromkeys(moving, 0.0)
+    for i in O.interactions:
+        if i.isReal:
+            for k in {i.id1, i.id2} & {*moving}:
+                elastic[k] += i.phys.elasticEnergy * (1 if i.phys.wall else 0.5)
+    of = [(O.bodies[k].state, O.forces.f(k), O.forces.t(k), elastic[k]) for k in moving]
+    frames.append([[*b.pos, *b.vel, *b.angVel, *f, *t, b.plasticWork, e] for b, f, t, e in of])
+path = [v for v, steps in s["moves"] for _ in range(steps)]
+def move():
+    for k in moving if O.iter < len(path) else []:
+        O.bodies[k].state.vel = path[O.iter]
+end = "Grown" if s["law2"].get("compaction") else ""
+pairs = s["ip2"]
+if s["adhesion"]:
+    pairs["workOfAdhesion"] = MatchMaker(matches=s["adhesion"])
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25), Bo1_Wall_Aabb()], verletDist=s["skin"]),
+    *([EpGrowth()] if end else []),
+    InteractionLoop([globals()["Ig2_" + a + "_Sphere_ScGeom" + end]() for a in ("Sphere", "Wall")],
+                    [Ip2_EpMat_EpMat_EpPhys(**pairs)], [globals()["Law2_ScGeom_EpPhys_" + s["law"]](**s["law2"])]),
+    PyRunner(command="record()", iterPeriod=s["every"], initRun=True),
+    PyRunner(command="move()", iterPeriod=1, initRun=True, dead=not path),
+    NewtonIntegrator(damping=0, gravity=(0, 0, -s["gravity"])),
+]
+O.dt, O.trackEnergy = s["dt"], True
+O.run(len(path) + 1 if path else s["steps"] + 1, True)  # records the last step
+np.save("frames.npy", frames)
+"""
+
+
+def in_yade(folder, s):
+    names = {"E": "young", "nu": "poisson", "density": "density"} | {k: k for k in s.names() if k != "workOfAdhesion"}
+    more = {"frictionAngle": float(np.arctan(s.friction)), "rollingFriction": s.rolling[1]}
+    gammas = [m.get("workOfAdhesion") for m in s.materials]
+    job = {
+        "law": title(s.law),
+        "materials": [{to: m[key] for key, to in names.items()} | more for m in s.materials],
+        "spheres": s.spheres(),
+        "moves": [(list(map(float, v)), n) for v, n in s.moves],
+        "law2": {"tangential": s.tangential, "rolling": s.rolling[0], "cohesion": s.cohesion[0]}
+        | ({"compaction": True} if s.compaction else {}),
+        "ip2": {"cohesionEnergyDensity": s.cohesion[1]}
+        | ({} if s.restitution is None else {"en": s.restitution, "es": s.restitution}),
+        "adhesion": [(i, j, sqrt(a * b)) for i, a in enumerate(gammas) for j, b in enumerate(gammas) if a and i <= j],
+        "skin": s.skin() / 6,
+    } | {key: getattr(s, key) for key in ("plane", "steps", "every", "gravity", "dt")}
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.json").write_text(json.dumps(job))
+    done = yade(SCRIPT, folder)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
+    return np.load(folder / "frames.npy")
+
+
+RUN = {"liggghts": liggghts, "lammps": lammps, "yade": in_yade}
+
+
+def frames(host, folder, scene):
+    """Numbers of all spheres at the start and after every `every` steps, shape (frames, spheres, 17)."""
+    return RUN[host](folder, scene)
