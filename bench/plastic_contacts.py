@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Writes data/plastic_contacts: eight tests of plastic contacts with their references, which call no contact law.
+"""Writes data/plastic_contacts: ten tests of plastic contacts with their references, which call no contact law.
 
 The closed forms are below; the states during an impact come from scipy's integrator with them. docs/evidence.md
 explains the files.
@@ -18,9 +18,10 @@ from epdem.theory.partial_slip import rebound
 from epdem.theory.thornton import Thornton
 
 FOLDER = Path(__file__).parents[1] / "data/plastic_contacts"
-# two spheres of one steel
+# two spheres of one steel, in the last test one of them of brass
 RADIUS, DENSITY, YOUNG, POISSON, P_Y, FRICTION = 5e-3, 7850.0, 208e9, 0.3, 2.8e9, 0.3
 R_STAR, MASS = RADIUS / 2, DENSITY * 4 / 3 * np.pi * RADIUS**3
+BRASS = dict(emod2=100e9, poisson2=0.35, pyield2=0.84e9)  # density of steel, so that both move alike
 E_STAR, G_STAR = YOUNG / 2 / (1 - POISSON**2), YOUNG / 4 / (2 - POISSON) / (1 + POISSON)
 STEPS = 500  # of a contact
 # from sphere j to sphere i, and along the shear: no axis of any code
@@ -32,14 +33,16 @@ class Law:
     """Thornton's law, exponent = 0, or one whose pressure grows as p_y (a/a_y)^exponent [N, m, J]."""
 
     exponent: float = 0.0
+    E_star: float = E_STAR
+    p_y: float = P_Y
 
     @property
     def yield_overlap(self) -> float:
-        return R_STAR * (np.pi * P_Y / (2 * E_STAR)) ** 2
+        return R_STAR * (np.pi * self.p_y / (2 * self.E_star)) ** 2
 
     @property
     def _at_yield(self) -> tuple[float, float]:
-        force = 4 / 3 * E_STAR * np.sqrt(R_STAR) * self.yield_overlap**1.5
+        force = 4 / 3 * self.E_star * np.sqrt(R_STAR) * self.yield_overlap**1.5
         return force, 0.4 * force * self.yield_overlap
 
     def force(self, overlap: float) -> float:
@@ -54,7 +57,7 @@ class Law:
 
     def recovered(self, peak: float) -> float:
         """Overlap that is recovered from a peak, elastically with the radius a^2 = R* peak."""
-        return 0.75 * self.force(peak) / (E_STAR * np.sqrt(R_STAR * peak))
+        return 0.75 * self.force(peak) / (self.E_star * np.sqrt(R_STAR * peak))
 
     def unloading(self, overlap: float, peak: float) -> float:
         """Force on the way back from a peak: Hertz with the radius that fits force and contact radius at the peak."""
@@ -131,6 +134,84 @@ class Impact:
         return left - self.e_n * self.speed * (time - self.contact_time), -self.e_n * self.speed
 
 
+@dataclass(frozen=True)
+class Grazing:
+    """An impact in a plane that slides throughout, `tangent` times as fast across as along, from first touch at t = 0.
+
+    The line of centres turns. A state is the place (2) [m] of sphere i against j, its velocity (2) [m/s] and the spin
+    [rad/s] of both; the first axis is the first normal, from j to i.
+    """
+
+    law: Law
+    speed: float
+    tangent: float
+
+    def overlap(self, state: np.ndarray) -> np.ndarray:
+        return 2 * RADIUS - np.hypot(state[0], state[1])
+
+    def loads(self, state: np.ndarray, peak: float | None) -> tuple[np.ndarray, float]:
+        """Force (2) [N] on sphere i and torque [N m] on both; peak: overlap [m] from which the contact unloads."""
+        overlap = float(self.overlap(state))
+        n = state[:2] / (2 * RADIUS - overlap)
+        along, arm = np.array([-n[1], n[0]]), RADIUS - 0.5 * overlap
+        force = self.law.force(max(overlap, 0.0)) if peak is None else self.law.unloading(overlap, peak)
+        friction = FRICTION * force * np.sign(state[2:4] @ along - 2 * arm * state[4])
+        return force * n - friction * along, arm * friction
+
+    @cached_property
+    def _branches(self) -> tuple:
+        def path(start: np.ndarray, peak: float | None, end: Callable) -> object:
+            def rates(t: float, state: np.ndarray) -> np.ndarray:
+                force, torque = self.loads(state, peak)
+                return np.array([*state[2:4], *(2 * force / MASS), torque / (0.4 * MASS * RADIUS**2)])
+
+            end.terminal, end.direction = True, 1  # type: ignore[attr-defined]
+            scale = np.array([RADIUS, RADIUS, self.speed, self.speed, self.speed / RADIUS])
+            limit = Impact(self.law, self.speed).contact_time
+            return solve_ivp(
+                rates, (0.0, 3 * limit), start, "DOP853", dense_output=True, events=end, rtol=1e-12,
+                atol=1e-15 * scale, max_step=limit / 100,
+            )  # fmt: skip
+
+        start = np.array([2 * RADIUS, 0.0, -self.speed, self.tangent * self.speed, 0.0])
+        load = path(start, None, lambda t, y: y[:2] @ y[2:4])
+        peak = float(self.overlap(load.y[:, -1]))
+        residual = peak - self.law.recovered(peak) + 1e-9 * peak
+        return load, path(load.y[:, -1], peak, lambda t, y: residual - self.overlap(y)), peak
+
+    @property
+    def loading_time(self) -> float:
+        return float(self._branches[0].t[-1])
+
+    @property
+    def contact_time(self) -> float:
+        return self.loading_time + float(self._branches[1].t[-1])
+
+    def state(self, time: float) -> np.ndarray:
+        load, back, _ = self._branches
+        if time <= self.loading_time:
+            state = load.sol(max(time, 0.0))
+        else:
+            state = back.sol(min(time, self.contact_time) - self.loading_time)
+        free = time - min(max(time, 0.0), self.contact_time)
+        return state + free * np.array([*state[2:4], 0.0, 0.0, 0.0])
+
+    def motion(self) -> str:
+        """The prescribed motion, a peak at a sample."""
+        dt, peak = self.contact_time / 100, self._branches[2]
+        steps = np.arange(-int(self.loading_time / dt) - 10, int((self.contact_time - self.loading_time) / dt) + 10)
+        rows, up = [], np.cross(NORMAL, ALONG)
+        for k in steps:
+            time = self.loading_time + k * dt
+            state = self.state(time)
+            apart = not 0 < time < self.contact_time
+            force, torque = (np.zeros(2), 0.0) if apart else self.loads(state, peak if k > 0 else None)
+            x, v, f = (0.5 * (a[0] * NORMAL + a[1] * ALONG) for a in (state[:2], state[2:4], 2 * force))
+            spin, turning = state[4] * up, torque * up
+            rows.append([(k - steps[0]) * dt, *x, *-x, *v, *-v, *spin, *spin, *f, *-f, *turning, *turning])
+        return table(np.array(rows))
+
+
 @dataclass
 class Motion:
     """Prescribed overlap and shear [m] of every step [s], with normal force and friction [N] on sphere i."""
@@ -154,9 +235,13 @@ class Motion:
         torque = (RADIUS - 0.5 * self.overlap)[:, None] * friction * np.cross(NORMAL, ALONG)
         still = np.zeros((n, 3))
         time = self.time_step * np.arange(n)[:, None]
-        table = np.hstack([time, half, -half, speed, -speed, still, still, force, -force, torque, torque]) + 0.0
-        names = "t,x_i,x_j,v_i,v_j,omega_i,omega_j,F_i,F_j,T_i,T_j\n"
-        return names + "".join(",".join(f"{x:.15g}" for x in row) + "\n" for row in table.tolist())
+        return table(np.hstack([time, half, -half, speed, -speed, still, still, force, -force, torque, torque]))
+
+
+def table(rows: np.ndarray) -> str:
+    """A CSV file of the motion of spheres i and j with forces and torques."""
+    names = "t,x_i,x_j,v_i,v_j,omega_i,omega_j,F_i,F_j,T_i,T_j\n"
+    return names + "".join(",".join(f"{x:.15g}" for x in row) + "\n" for row in (rows + 0.0).tolist())
 
 
 def of_impacts(impacts: list[Impact]) -> Motion:
@@ -238,6 +323,7 @@ def yaml(
     common = dict(diam=2 * RADIUS, radius=RADIUS, dens=DENSITY, emod=YOUNG, poisson=POISSON, pyield=P_Y)
     given = "".join(f"  {name} {number(value)}\n" for name, value in (common | variables).items())
     lift = "${lift}" if "lift" in variables else "0.0"
+    types = 2 if "emod2" in variables else 1
     return f"""---
 # {description}
 lammps_version: 22 Jul 2025
@@ -254,9 +340,9 @@ pre_commands: |
   boundary f f f
   atom_style sphere
   region box block -0.05 0.05 -0.03 0.03 -0.03 0.03 units box
-  create_box 1 box
+  create_box {types} box
   create_atoms 1 single -${{sep}} -{lift} 0.0 units box
-  create_atoms 1 single  ${{sep}} {lift} 0.0 units box
+  create_atoms {types} single  ${{sep}} {lift} 0.0 units box
   set group all diameter ${{diam}} density ${{dens}}
   group left id 1
   group right id 2
@@ -273,7 +359,7 @@ natoms: 2
 variables: |
 {given}pair_style: ep
 pair_coeff: |
-  * * {law}
+  {law}
 run_segments: |-
   {" ".join(map(str, np.diff([0, *segments])))}
 analytic_enable: {"yes" if closed else "no"}
@@ -339,10 +425,29 @@ def oblique(law: Law, speed: float, tangent: float, text: str, description: str)
     )  # fmt: skip
 
 
+def grazing(impact: Grazing, text: str, description: str, more: dict[str, float]) -> str:
+    """Both spheres slide over each other throughout and turn; places, velocities and spins afterwards."""
+    speed, dt = impact.speed, float(f"{impact.contact_time / STEPS:.3g}")
+    gap = 20.5 * speed * dt
+    lift = gap / 2 * impact.tangent
+    variables = dict(xmu=FRICTION, vn_in=speed / 2, vt_in=speed / 2 * impact.tangent, sep=RADIUS + gap / 2, lift=lift)
+    variables |= dict(dt=dt, force_tol=1e-8, v_y=impact.law.yield_speed) | more
+    segments = [round((gap / speed + 1.05 * impact.contact_time) / dt)]
+    state = impact.state(segments[0] * dt - gap / speed)
+    place, velocity = (0.5 * np.array([-a[0], a[1], 0.0]) for a in (state[:2], state[2:4]))  # the first normal is -x
+    spin = np.array([0.0, 0.0, -state[4]])
+    states = dict(pos=[(place, -place)], vel=[(velocity, -velocity)], omega=[(spin, spin)])
+    start = "-${vn_in} -${vt_in} 0.0"
+    return yaml(
+        description, law=text, variables=variables, segments=segments, states=states, epsilon=1e-4, closed=False,
+        start=start,
+    )  # fmt: skip
+
+
 def cases() -> dict[str, tuple[str, str]]:
     """(YAML, CSV) of each case."""
     thornton, hard = Law(), Law(0.25)
-    plain, hardening = "thornton ${emod} ${poisson} ${pyield}", "meyer ${emod} ${poisson} ${pyield} ${exponent}"
+    plain, hardening = "* * thornton ${emod} ${poisson} ${pyield}", "* * meyer ${emod} ${poisson} ${pyield} ${exponent}"
     slips, v_y = plain + " tangential partial_slip ${xmu}", thornton.yield_speed
     found = {}
     for name, ratio in (
@@ -369,7 +474,18 @@ def cases() -> dict[str, tuple[str, str]]:
     said = "impact at 30 v_y of a metal that hardens"
     strong = Impact(hard, 30 * hard.yield_speed)
     found["hardening"] = head_on(hard, [strong.speed], hardening, said), of_impacts([strong])
-    return {f"{k}_{name}": (text, motion.text()) for k, (name, (text, motion)) in enumerate(found.items(), 1)}
+    written = {name: (text, motion.text()) for name, (text, motion) in found.items()}
+    graze = Grazing(thornton, 2 * v_y, np.tan(np.radians(88)))
+    slides = plain + " tangential history ${xmu}"
+    written["grazing"] = grazing(graze, slides, "impact at 2 v_y, 88 degrees from the normal", {}), graze.motion()
+    moduli = ((1 - nu**2) / E for E, nu in ((YOUNG, POISSON), (BRASS["emod2"], BRASS["poisson2"])))
+    soft = Law(E_star=1 / sum(moduli), p_y=BRASS["pyield2"])
+    graze = Grazing(soft, 5 * soft.yield_speed, np.tan(np.radians(76)))
+    words = "thornton ${emod} ${poisson} ${pyield}\n  2 2 thornton ${emod2} ${poisson2} ${pyield2}\n  1 2 mixed"
+    words = f"1 1 {words} tangential partial_slip ${{xmu}}"
+    said = "impact of steel and brass at 5 v_y, 76 degrees from the normal"
+    written["two_materials"] = grazing(graze, words, said, BRASS), graze.motion()
+    return {f"{k}_{name}": both for k, (name, both) in enumerate(written.items(), 1)}
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ MAX_IMPACTS = 4096
 MOST_STEPS = 100_000  # in contact
 HIGHEST_E_N = 1.2  # of a measurement: 1 and its noise
 
-Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.5, hint="from the normal")]
+Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.55, hint="from the normal")]
 Tolerance = Annotated[float, Quantity("1", above=0.0)]
 
 

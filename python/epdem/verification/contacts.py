@@ -65,22 +65,35 @@ class ContactTest:
         return np.array([line.split() for line in self.lines(key)], float)
 
     def touch(self) -> Touch:
-        """The spheres, law and friction that pair_coeff and the variables name. Raises CaseError."""
-        (line,) = self.lines("pair_coeff")
-        law, E, nu, *words = Template(line).safe_substitute(self.variables).split()[2:]
-        declared = find_law(law).parameters
-        options = words[len(declared) :]
-        friction = options.index("tangential") if "tangential" in options else None
-        sphere = {"radius": self.value("diam") / 2, "material": "steel"}
+        """The spheres, law and friction that pair_coeff and the variables name. Raises CaseError.
+
+        One line for all types, or a line of each of two types and one of their pair, which has the friction.
+        """
+        lines = [Template(line).safe_substitute(self.variables).split() for line in self.lines("pair_coeff")]
+        types = [words for words in lines if words[0] == words[1]]
+        law, options = types[0][2], lines[-1][2:]
+        declared, strength = find_law(law).parameters, find_law(law).strength
+        materials: dict[str, dict[str, float]] = {}
+        numbers: dict[str, float] = {}
+        for name, words in zip(("steel", "other"), types, strict=False):
+            numbers = dict(zip((p.name for p in declared), map(float, words[5 : 5 + len(declared)]), strict=False))
+            E, nu = map(float, words[3:5])
+            materials[name] = {"young_modulus": E, "poisson_ratio": nu, "density": self.value("dens")}
+            if len(types) > 1 and strength:  # each has its own
+                materials[name]["yield_stress"] = numbers.pop(strength)
+                numbers[f"{strength}_ratio"] = 1.0
+        names = list(materials)
+        spheres = [{"radius": self.value("diam") / 2, "material": name} for name in (names[0], names[-1])]
         case = Case(
             case={"name": self.name},
-            materials={"steel": {"young_modulus": float(E), "poisson_ratio": float(nu), "density": self.value("dens")}},
-            impact={"kind": "sphere-sphere", "body": sphere, "target": sphere, "speeds": [1.0]},
-            law={"name": law} | dict(zip((p.name for p in declared), map(float, words), strict=False)),
+            materials=materials,
+            impact={"kind": "sphere-sphere", "body": spheres[0], "target": spheres[1], "speeds": [1.0]},
+            law={"name": law} | numbers,
         )
         x = experiment(case.model)
-        if friction is None:
+        if "tangential" not in options:
             return Touch(x, 0.0, "history")
+        friction = options.index("tangential")
         return Touch(x, float(options[friction + 2]), options[friction + 1])  # type: ignore[arg-type]
 
 
