@@ -20,7 +20,7 @@ WORDS = (  # of LAMMPS, of LIGGGHTS
     (r"atom_style sphere", "atom_style granular\nnewton off"),
     (r"newton off\n(?=comm_modify)", ""),
     (r"comm_modify vel yes", "communicate single vel yes"),
-    (r"f_heat(?!\[)", "f_temperature"),
+    (r"f_heat\b(?!\[)", "f_temperature"),
     (r"f_EP_HISTORY0\[1\] f_EP_HISTORY0\[4\]", "f_plasticWork f_frictionWork"),
     (r"pair_style ep( energies)?\n", ""),
     (r" 1234 ", " 15485863 "),
@@ -29,13 +29,16 @@ WORDS = (  # of LAMMPS, of LIGGGHTS
         r'dump end \1 1 \2\ndump_modify end sort id format "%d %d %.17g %.17g %.17g %.17g"\nrun 0',
     ),
 )
+STRENGTHS = {"thornton": "yieldPressure", "cavity": "yieldStress"}
 WALL = re.compile(r"fix (\w+) all wall/ep (\wplane) (\S+) (\S+) (.*)")
 
 
 def contact_model(words, types, works):
     """Properties of like types and the contact model, from the words of a pair or a wall of LAMMPS."""
     law, E, nu, *others = words.split()
-    properties = {"youngsModulus": E, "poissonsRatio": nu} | ({"yieldPressure": others[0]} if law == "thornton" else {})
+    properties = {"youngsModulus": E, "poissonsRatio": nu}
+    if law in STRENGTHS:
+        properties[STRENGTHS[law]] = others[0]
     pairs = {"coefficientFriction": "0.3", "coefficientRestitution": "0.5" if "restitution" in words else "0.9"}
     tables = {name: f"peratomtype {f'{x} ' * types}" for name, x in properties.items()}
     tables |= {name: f"peratomtypepair {types} {f'{x} ' * types**2}" for name, x in pairs.items()}
@@ -129,6 +132,33 @@ def test_a_released_contact_conducts_nothing(host, tmp_path):
     assert end[:, -1] - [300, 400] == pytest.approx([rate, -rate], rel=1e-5)
     _, end = run(host, text.format(2.5e-4) + END.format("heat"), tmp_path / "released")
     assert end[:, -1].tolist() == [300.0, 400.0]
+
+
+THEIRS = """fix k all property/global thermalConductivity peratomtype 10
+fix c all property/global thermalCapacity peratomtype 500
+fix theirs all heat/gran initial_temperature 300
+timestep 1e-6
+run 0
+set atom 2 property/atom Temp 400
+fix_modify heat temperature 1 1 300
+fix_modify heat temperature 2 2 400
+run 1
+"""
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize(
+    ("pair", "factor"),
+    [("hertz 1e7 0.3", math.sqrt(2 * math.pi)), ("cavity 1e9 0.3 1e4", math.sqrt(math.pi))],
+    ids=["hertz", "plastic"],
+)
+def test_liggghts_conducts_more_through_the_lens(pair, factor, tmp_path):
+    """Its own fix heat/gran over ours, at an overlap of 1e-3 radii."""
+    text = heat(spheres((0, 0, 0), (0.01999, 0, 0), pair=pair), "0 10 500", "1 1 300", "2 2 400") + THEIRS
+    _, ours = run("liggghts", text + END.format("heat"), tmp_path / "ours")
+    _, lens = run("liggghts", text + END.format("heatFlux"), tmp_path / "lens")
+    flow = (ours[0, -1] - 300) / 1e-6 * 7850 * math.pi / 6 * 0.02**3 * 500
+    assert lens[0, -1] / flow == pytest.approx(factor, rel=2e-3)
 
 
 LATTICES = {

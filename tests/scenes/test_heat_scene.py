@@ -4,7 +4,7 @@
 import numpy as np
 import pandas as pd
 import pytest
-from parts_cases import BED, FLOOR, GLASS, STEEL, parts
+from parts_cases import BED, FLOOR, GLASS, STEEL, own, parts
 from scene_runs import restart_steps, run, write_case
 
 from epdem.case.scene import parse
@@ -163,9 +163,12 @@ def without(key, material="glass"):
 @pytest.mark.parametrize(
     ("data", "sentence"),
     [
-        (without("specific_heat"), r"materials\.glass\.specific_heat is missing: scene\.wall\.floor has a temperature"),
+        (
+            without("specific_heat"),
+            r"materials\.glass\.specific_heat is missing: scene\.wall\.floor\.temp",
+        ),
         (without("thermal_conductivity", "steel"), r"materials\.steel\.thermal_conductivity is missing"),
-        (warm(fill=[BED]), r"scene\.fill\.bed\.temperature is missing: scene\.wall\.floor has one"),
+        (warm(fill=[BED]), r"scene\.fill\.bed\.temperature is missing: scene\.wall\.floor\.temperature is given"),
         (warm(wall=[FLOOR]), r"scene\.row\.q: wall floor has no temperature"),
     ],
 )
@@ -187,6 +190,41 @@ def test_a_scene_without_temperatures_has_no_word_of_heat(host, file):
     assert decks[0] == decks[1] and not any("heat" in text or "temperature" in text for text in decks[0].values())
     with_heat = scene_engine(host).files(plan(parse(warm())))[file]
     assert "heat/ep 0.9 1.0 800.0 50.0 500.0 wall wall_floor 350.0 50.0" in with_heat
+
+
+def warm_kind(name, **keys):
+    data = own(name)
+    data["materials"] = {name: material | HEAT for name, material in data["materials"].items()}
+    data["scene"] |= {"temperature": "300 K", "wall_temperature": "350 K"} | keys
+    return data
+
+
+@pytest.mark.parametrize("name", ["drum_beads", "hopper_beads", "settle_glass", "peening_steel", "compaction_powder"])
+def test_every_kind_takes_temperatures(name):
+    p = plan(parse(warm_kind(name)))
+    assert set(p.heat.walls) == {w.name for w in p.scene.wall} and set(p.heat.walls.values()) == {350.0}
+    assert {f.temperature for f in p.insertions} == {300.0}
+    assert set(p.heat_flows.values()) == {w.name for w in p.scene.planes} | {*p.scene.meshes}
+
+
+def test_a_kind_lacks_a_temperature_by_the_name_of_its_key():
+    data = warm_kind("drum_beads")
+    del data["scene"]["temperature"]
+    with pytest.raises(CaseError, match=r"scene\.temperature is missing: scene\.wall_temperature is given"):
+        plan(parse(data))
+
+
+@HOSTS
+def test_a_warm_drum_heats_its_bed(host, tmp_path):
+    """Heat of the spheres = works + flow from the drum, in a case of a kind."""
+    data = warm_kind("drum_beads", count=40, duration="80 ms", temperature="1 mK", wall_temperature="0.01 K")
+    data |= {"contact": SLIP, "output": {"rows": 20, "particles": 2, "energy": True}}
+    found = run(write_case(data | {"numerics": {"time_step": "2e-5 s"}}, tmp_path), host, out=tmp_path / "out").results
+    last, rows = last_frame(found.particles), found.rows
+    gained = (last["mass"] * 800.0 * (last["temperature"] - 1e-3)).sum()
+    into = (rows["heat_drum"].to_numpy()[1:] * np.diff(rows["time"])).sum()
+    works = last["plastic_work"].sum() + last["friction_work"].sum()
+    assert works > 0 > into and gained + into == pytest.approx(0.9 * works, rel=1e-6)
 
 
 def test_losses_that_heat_nothing_are_named():

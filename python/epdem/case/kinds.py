@@ -30,7 +30,7 @@ from pydantic_core import PydanticKnownError, SchemaError
 from ..base import paths
 from ..base.rendering import OPTIONS, number
 from ..errors import CaseError
-from .fields import Frozen, Name, Quantity
+from .fields import Frozen, Name, Quantity, Temperature
 from .messages import explain, shorten
 from .parts import Measure, Parts
 from .sizes import Count, Mixture, Particles, refuse_shares
@@ -47,13 +47,18 @@ TYPES: dict[str, Any] = {"particles": Mixture, "count": Count, "material": Name,
 
 
 class Keys(Frozen):
-    """The keys of a kind, keys["count"]; `body`: template of the parts, below line `above` of its file."""
+    """The keys of a kind, keys["count"]; `body`: template of the parts, below line `above` of its file.
+
+    temperature: with which all spheres come; wall_temperature: of all walls. Every kind has them.
+    """
 
     body: ClassVar[str]
     above: ClassVar[int]
     heads: ClassVar[dict[str, dict[str, Any]]]
     kind: str
     measure: list[Measure] = Field(default_factory=list, max_length=64)
+    temperature: Temperature | None = None
+    wall_temperature: Temperature | None = None
 
     def __getitem__(self, name: str) -> Any:
         if name not in self.heads:
@@ -124,7 +129,7 @@ def _mistake(path: Path, text: str, key: str, problem: object) -> CaseError:
 
 def _refuse_head(name: str, head: Any, *, own: bool) -> None:
     """Raise ValueError for the head of a key that has no meaning; `own`: of a user."""
-    if not name.isidentifier() or name in {*FUNCTIONS, "kind", "measure", "largest", "output"}:
+    if not name.isidentifier() or name in {*FUNCTIONS, "largest", "output", *Keys.model_fields}:
         raise ValueError("the name is taken or no name in a template; give the key another one")
     if not isinstance(head, dict) or ("unit" in head) == ("type" in head):
         raise ValueError('must be a table with one of unit and type, as { unit = "m" }')
@@ -285,11 +290,25 @@ def _tables(text: str, place: str) -> dict[str, Any]:
         at = re.search(r"at line (\d+)", str(error))
         shown = f"; the line is {shorten(text.splitlines()[int(at[1]) - 1].strip())!r}" if at else ""
         raise CaseError(f"{place}: {error}{shown}") from None
-    for name in ("fill", "measure"):
+    for name in ("fill", "measure", "wall", "body", "row"):
         if not (isinstance(x := scene.get(name, []), list) and all(isinstance(part, dict) for part in x)):
             raise CaseError(f"{place}: {name} must be a list of tables; write [[scene.{name}]]")
     assert isinstance(scene, dict)
     return scene
+
+
+def _give_temperatures(keys: Keys, scene: dict[str, Any], places: dict[str, str]) -> None:
+    """Gives spheres and walls the temperatures of the keys, and each wall that is always there a row of its heat."""
+    wanted = {"fill": keys.temperature, "body": keys.temperature, "wall": keys.wall_temperature}
+    for kind, T in wanted.items():
+        for part in scene.get(kind, []):
+            places[f"scene.{kind}.{part.get('name')}.temperature"] = f"scene.{'wall_' * (kind == 'wall')}temperature"
+            if T is not None:
+                part.setdefault("temperature", f"{number(T)} K")
+    always = [w.get("name") for w in scene.get("wall", []) if "phases" not in w and keys.wall_temperature is not None]
+    flows = [{"name": f"heat_{x}", "wall": x, "heat_flow": True, "title": f"heat flow into the {x}"} for x in always]
+    if flows:
+        scene["row"] = [*scene.get("row", []), *flows]
 
 
 def parts(keys: Keys | Parts, output: object) -> Parts:
@@ -312,6 +331,7 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
                 raise CaseError(f"{place}: fill.particles = {key!r} is no key of type particles; there are {known}")
             fill["particles"] = list(mixtures[key])
             places[f"scene.fill.{fill.get('name')}.particles"] = f"scene.{key}"
+    _give_temperatures(keys, scene, places)
     given = scene.get("places")
     scene["places"] = places | given if isinstance(given, dict) else given or places
     try:

@@ -32,11 +32,10 @@ def heat(case: SceneCase, m: Model) -> Heat | None:
             )
     if not warm:
         return None
+    given = f"{parts.place(f'{warm[0]}.temperature')} is given"
     for place, T in comes.items():
         if T is None:
-            raise CaseError(
-                f"{parts.place(place)}.temperature is missing: {warm[0]} has one, and every sphere needs one"
-            )
+            raise CaseError(f"{parts.place(f'{place}.temperature')} is missing: {given}, and every sphere needs one")
     conducting = {w.material for w in parts.wall if w.name in walls}
     conductivities, capacities = [], []
     for t in m.types:
@@ -44,7 +43,7 @@ def heat(case: SceneCase, m: Model) -> Heat | None:
         for key in ("thermal_conductivity", "specific_heat"):
             needed = not t.wall or (key == "thermal_conductivity" and t.material in conducting)
             if needed and getattr(x, key) is None:
-                raise CaseError(f"materials.{t.material}.{key} is missing: {warm[0]} has a temperature")
+                raise CaseError(f"materials.{t.material}.{key} is missing: {given}")
         conductivities.append(x.thermal_conductivity or 1.0)
         capacities.append(x.specific_heat or 1.0)
     return Heat(case.contact.heat_share, tuple(conductivities), tuple(capacities), walls)
