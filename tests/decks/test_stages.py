@@ -103,6 +103,7 @@ def test_psi_2_of_one_spring_is_not_checked_unless_the_case_asks(tmp_path):
         found = run(tmp_path / f"{name}.toml", engines=[engine("embedded")], out=tmp_path / name)
         assert found.passed == passed and found.results.comparison["psi_2_error"].max() > 0.05
         assert any("psi_2 is not checked" in warning for warning in found.warnings) == passed
+        assert any("the reference of psi_2 is partial slip" in warning for warning in found.warnings) != passed
 
 
 def test_a_stored_result_is_used_only_while_its_inputs_are_the_same(tmp_path):

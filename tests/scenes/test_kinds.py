@@ -151,16 +151,24 @@ def test_a_mistake_names_the_key_of_the_kind(change, words, mill):
         ("{% set r = diameter / 2 %}", "{% set r = 10**(10**10) %}", "line 10: a list, text or number of more than"),
         ("{% set r = diameter / 2 %}", "{% set r = diameter / 2 }", "line 10: unexpected '}'"),
         ("particles = {{ balls }}", 'particles = "steel"', "fill.particles = 'steel' is no key of type particles; "),
-        ('material = "{{ walls }}"', "material = {{ walls }}", "toml.j2': Invalid value .*; the line is 'wall = "),
+        (
+            'material = "{{ walls }}"',
+            "material = {{ walls }}",
+            "j2', line 13: Invalid value near .* material = steel, ang",
+        ),
         ('material = "{{ walls }}"', 'material = "tin"', "scene.wall.shell.material = 'tin' is not defined"),
-        ('["torque"]', '["torqe"]', "key_figure = 'torqe' is no row, measure or figure; there are kinetic_energy, "),
+        (
+            '["torque"]',
+            '["torqe"]',
+            "line 17: key_figure = 'torqe' is no row, measure or figure; there are kinetic_energy, ",
+        ),
         ('["torque"]', '["heckel"]', "key_figure = 'heckel' is no row, measure or figure; there are"),
         (
             'kind = "cylinder"',
             'kind = "tube"',
             "scene of kind './mill.toml.j2', line 13: wall.0.kind = 'tube', must be one of",
         ),
-        ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2': "),
+        ("phase = [{", "phase = [[", "scene of kind './mill.toml.j2', line 1[5-8]: "),
         (
             'wall = "shell"',
             'wall = "hull"',
@@ -183,6 +191,13 @@ def test_a_mistake_of_a_kind_names_its_file(old, new, words, mill):
     (mill.parent / "mill.toml.j2").write_text(MILL.replace(old, new))
     with pytest.raises(CaseError, match=words):
         refuse_measures(plan(load(mill)))
+
+
+def test_a_message_names_the_key_of_the_case_also_where_the_kind_has_no_places(mill):
+    kind = re.sub("^places = .*", "", MILL, flags=re.M)
+    (mill.parent / "mill.toml.j2").write_text(kind.replace("/ 2 }}", "/ 99 }}"))
+    with pytest.raises(CaseError, match=r"^scene.count = \d+: the spheres would fill"):
+        plan(load(mill))
 
 
 @pytest.mark.parametrize("name", ["of_type", "heads", "body", "model_copy", "named_materials", "_secret", "copy"])

@@ -31,7 +31,7 @@ from ..base import paths
 from ..base.rendering import OPTIONS, number
 from ..errors import CaseError
 from .fields import Frozen, Name, Quantity, Temperature
-from .messages import explain, shorten
+from .messages import explain
 from .parts import Measure, Parts
 from .sizes import Count, Mixture, Particles, refuse_shares
 from .toml import KIND, text_of
@@ -282,14 +282,20 @@ def _filled_in(keys: Keys, values: dict[str, Any], place: str, *, body: str = ""
         raise CaseError(f"{place}, line {keys.above + line}: {said}") from None
 
 
-def _tables(text: str, place: str) -> dict[str, Any]:
-    """The table [scene] of a filled template. Raises CaseError that shows the line."""
+def _tables(keys: Keys, values: dict[str, Any], place: str) -> dict[str, Any]:
+    """The table [scene] of the template, filled in. Raises CaseError that shows the line and what it has there."""
+    text = _filled_in(keys, values, place)
     try:
         scene = tomllib.loads(text)["scene"]
     except tomllib.TOMLDecodeError as error:
-        at = re.search(r"at line (\d+)", str(error))
-        shown = f"; the line is {shorten(text.splitlines()[int(at[1]) - 1].strip())!r}" if at else ""
-        raise CaseError(f"{place}: {error}{shown}") from None
+        at = re.search(r" \(at line (\d+), column (\d+)\)", str(error))
+        if at is None:  # at the end of the text
+            raise CaseError(f"{place}: {error}") from None
+        row, column = int(at[1]) - 1, int(at[2]) - 1
+        line = _filled_in(keys, values, place, body=_numbered(keys.body)).splitlines()[row].rpartition(MARK)[2]
+        shown = text.splitlines()[row][max(column - 30, 0) : column + 20].strip()
+        place = f"{place}, line {keys.above + int(line)}" if line else place
+        raise CaseError(f"{place}: {str(error).replace(at[0], '')} near {shown!r}; a text has quotes") from None
     for name in ("fill", "measure", "wall", "body", "row"):
         if not (isinstance(x := scene.get(name, []), list) and all(isinstance(part, dict) for part in x)):
             raise CaseError(f"{place}: {name} must be a list of tables; write [[scene.{name}]]")
@@ -311,17 +317,30 @@ def _give_temperatures(keys: Keys, scene: dict[str, Any], places: dict[str, str]
         scene["row"] = [*scene.get("row", []), *flows]
 
 
+def _values(keys: Keys, output: object) -> dict[str, Any]:
+    """What the template of a kind knows."""
+    mixtures = {key: _Mixture(key, found) for key, found in keys.of_type("particles").items()}
+    largest = {key: max(p.radii()[1] for p in mixture) for key, mixture in mixtures.items()}
+    return {name: keys[name] for name in keys.heads} | mixtures | {"largest": largest, "output": output}
+
+
+def in_file(keys: Keys | Parts, output: object, said: str) -> str:
+    """A sentence on a key of the parts ("wall.0.kind = ..."), behind the kind and the line of its file."""
+    if isinstance(keys, Parts):
+        return f"scene: {said}"
+    place = f"scene of kind {keys.kind!r}"
+    line = _line(_filled_in(keys, _values(keys, output), place, body=_numbered(keys.body)), said)
+    return f"{place}{f', line {keys.above + int(line)}' if line else ''}: {said}"
+
+
 def parts(keys: Keys | Parts, output: object) -> Parts:
     """The scene of parts that the keys of a kind make, with the tables of `output`. Raises CaseError for values that do
     not fit together."""
     if isinstance(keys, Parts):
         return keys
-    mixtures = {key: _Mixture(key, found) for key, found in keys.of_type("particles").items()}
-    largest = {key: max(p.radii()[1] for p in mixture) for key, mixture in mixtures.items()}
-    values = {name: keys[name] for name in keys.heads} | mixtures
-    place = f"scene of kind {keys.kind!r}"
-    values |= {"largest": largest, "output": output}
-    scene = _tables(_filled_in(keys, values, place), place)
+    place, values = f"scene of kind {keys.kind!r}", _values(keys, output)
+    scene = _tables(keys, values, place)
+    mixtures = {key: mixture for key, mixture in values.items() if isinstance(mixture, _Mixture)}
     places: dict[str, str] = {}
     for fill in scene.get("fill", []):
         key = fill.get("particles")
@@ -331,6 +350,9 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
                 raise CaseError(f"{place}: fill.particles = {key!r} is no key of type particles; there are {known}")
             fill["particles"] = list(mixtures[key])
             places[f"scene.fill.{fill.get('name')}.particles"] = f"scene.{key}"
+        amounts = [name for name, count in keys.of_type("count").items() if count == fill.get("count")]
+        if len(amounts) == 1:
+            places[f"scene.fill.{fill.get('name')}"] = f"scene.{amounts[0]}"
     _give_temperatures(keys, scene, places)
     given = scene.get("places")
     scene["places"] = places | given if isinstance(given, dict) else given or places
@@ -338,5 +360,4 @@ def parts(keys: Keys | Parts, output: object) -> Parts:
         return Parts.model_validate({"kind": "parts", **scene, "measure": [*scene.get("measure", []), *keys.measure]})
     except ValidationError as error:
         said = explain(place, scene, error, "scene").removeprefix(f"{place}: ")
-        line = _line(_filled_in(keys, values, place, body=_numbered(keys.body)), said)
-        raise CaseError(f"{place}{f', line {keys.above + int(line)}' if line else ''}: {said}") from None
+        raise CaseError(in_file(keys, output, said)) from None

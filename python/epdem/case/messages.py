@@ -3,6 +3,7 @@
 
 import copy
 import difflib
+import functools
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -123,6 +124,9 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
         text = f"unknown key{_real_key(place, data, kind, other, path)}"
     else:
         text = text_of_problem(problem)
+        table = functools.reduce(lambda part, key: part[key], keys[:-1], data) if problem["type"] == "missing" else {}
+        if near := difflib.get_close_matches(str(keys[-1]), map(str, table), n=1, cutoff=0.8) if table else []:
+            text = f"{text}, or correct the spelling of {near[0]}"
     text = cut_quotes(text.removeprefix("Value error, "))
     shown = "" if value is None or isinstance(value, dict | list) else f" = {shorten(repr(value))}"
     if shown:

@@ -152,6 +152,9 @@ def prepare(
         if case.contact and case.tolerances.psi_2 == math.inf:
             given = "partial slip without a dashpot; take 'partial_slip' alone, or give check.psi_2"
             warnings.append(f"contact: psi_2 is not checked, because its reference is {given}")
+        elif case.contact and case.contact.tangential == "history":
+            said = "the reference of psi_2 is partial slip, from which one spring differs by up to 0.3"
+            warnings.append(f"contact.tangential = 'history': {said}; leave check.psi_2 out")
         for law, p in plans.items():
             warnings += predictions[law].warnings
             for tool in tools:

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
+from ...case.kinds import in_file
 from ...case.motions import FloatArray
 from ...case.outputs import MassFlow, ReboundSpeed
 from ...case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
@@ -37,10 +38,8 @@ def refuse_measures(p: ScenePlan) -> None:
     figures = [*sorted({*taken, *names} - {"step", "time"}), *(PRESS_FIGURES if s.stages else ())]
     figures += [figure for figure, check in FRAME_FIGURES.items() if any(isinstance(c, check) for c in s.check)]
     if bad := next((name for name in s.key_figure if name not in figures), None):
-        kind = "" if p.case.scene.kind == "parts" else f" of kind {p.case.scene.kind!r}"
-        raise CaseError(
-            f"scene{kind}: key_figure = {bad!r} is no row, measure or figure; there are {', '.join(figures)}"
-        )
+        said = f"key_figure = {bad!r} is no row, measure or figure; there are {', '.join(figures)}"
+        raise CaseError(in_file(p.case.scene, p.output, said))
     for m in s.measure:
         place = f"scene.measure.{m.name}"
         if names.count(m.name) > 1:
