@@ -88,11 +88,14 @@ def test_the_flow_has_the_radius_of_growth(host, tmp_path):
     data["output"] = {"rows": 20, "particles": 2, "contacts": 2}
     data["scene"]["phase"] = [{"name": "rest", "duration": "2 ms"}]
     found = run(write_case(data, tmp_path), host, out=tmp_path / "out").results
-    contact = last_frame(found.contacts).query("wall == 'zlow'").iloc[0]
+    contacts = last_frame(found.contacts).set_index("wall")
+    contact = contacts.loc["zlow"]
     assert contact["added_overlap"] > 0.01 * contact["overlap"]
     ball = last_frame(found.particles)["temperature"].item()
     expected = 2 * (2 / (1 + 1 / 50)) * contact["contact_radius"] * (ball - 350)
     assert found.rows["q"].iloc[-1] == pytest.approx(expected, rel=1e-5)
+    assert contact["heat_flow"] == pytest.approx(-expected, rel=1e-12)
+    assert (contacts["heat_flow"].drop("zlow") == 0.0).all()  # at adiabatic walls
 
 
 @pytest.mark.lammps
@@ -106,12 +109,16 @@ def test_hosts_and_loops_agree(monkeypatch, tmp_path):
         for n, place in enumerate(places)
     ]
     data = warm(body=body, fill=[])
-    data["contact"] = SLIP
+    data |= {"contact": SLIP, "output": data["output"] | {"contacts": 4}}
     data["scene"]["phase"] = [{"name": "fall", "duration": "4 ms"}]
     tables = []
     for host, loop in (("lammps", ""), ("liggghts", ""), ("liggghts", "generic")):
         monkeypatch.setenv("EPDEM_LOOP", loop)
         found = run(write_case(data, tmp_path), host, out=tmp_path / (host + loop)).results
+        T, pairs = found.particles.set_index(["step", "id"])["temperature"], found.contacts.query("j > 0")
+        one, other = (T[pd.MultiIndex.from_frame(pairs[["step", body]])].to_numpy() for body in "ij")
+        expected = 2 * pairs["contact_radius"] * (other - one)
+        assert len(pairs) and pairs["heat_flow"].to_numpy() == pytest.approx(expected.to_numpy(), rel=1e-12)
         tables.append([last_frame(found.particles).sort_values("id")["temperature"], found.rows["q"]])
     assert tables[0][1].abs().max() > 0
     for temperatures, q in tables[1:]:

@@ -16,8 +16,10 @@ from ...laws.library import Law
 from ...laws.strengths import LawSpec
 from ...theory.adhesion import plastic_work
 from ...theory.backbones import JKR
+from ...theory.conduction import contact_conductance
 from ...theory.numerics import gauss
 from ..plan import quantities
+from ..plan.heat import Heat
 from ..plan.model import pair_law
 from ..plan.plan import ScenePlan
 from ..plan.quantities import PARTICLES, ROWS, SPINS, STRAINS, TEMPERATURE
@@ -30,6 +32,7 @@ UNITS = quantities.UNITS | {  # of the columns that have one
         "m": "overlap added_overlap grown_overlap contact_radius delta_max residual_overlap dent_radius wear height",
         "m^2": "area",
         "S": "conductance",
+        "W": "heat_flow",
         "m/s": "speed",
         "N": "force force_x force_y force_z",
         "Pa": "body_pressure normal_stress shear_stress pressure asked reached peak opposite_pressure radial_pressure",
@@ -154,9 +157,13 @@ BY_LAW = ["force", "contact_radius", "residual_overlap", "dent_radius", "plastic
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
+def _columns_of_engine(p: ScenePlan) -> list[str]:
+    return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *NORMAL, *FORCE]
+
+
 def contact_columns(p: ScenePlan) -> list[str]:
     """The columns of the table of contacts."""
-    return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *NORMAL, *FORCE, *BY_LAW]
+    return [*_columns_of_engine(p), *BY_LAW, *["heat_flow"] * (p.heat is not None)]
 
 
 def touching(p: ScenePlan, raw: pd.DataFrame) -> pd.DataFrame:
@@ -206,11 +213,22 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     for name, none in (("screening", 1.0), ("grown_overlap", 0.0), ("body_pressure", 0.0)):
         known[name] = raw[name] if p.model.compaction else none
     known["screening"] = known["screening"].where(known["screening"] > 0.0, 1.0)  # 0: a new contact
-    table = raw[contact_columns(p)[: -len(BY_LAW)]].join(energies(p, known))
+    table = raw[_columns_of_engine(p)].join(energies(p, known))
+    if p.heat:
+        table["heat_flow"] = _heat_flow(p.heat, raw["wall"], first, second, table["contact_radius"])
     if p.model.cohesion:
         table["elastic_energy"] += cohesive_energy(p.model.cohesion, first["radius"], second["radius"], raw["overlap"])
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
+
+
+def _heat_flow(heat: Heat, wall: pd.Series, one: pd.DataFrame, other: pd.DataFrame, radius: pd.Series) -> Array:
+    """Heat flow [W] into the first body of each contact; none from an adiabatic wall."""
+    k = np.array([0.0, *heat.conductivities])
+    k_i, k_j = (k[body["type"].to_numpy(int)] for body in (one, other))
+    drop = other["temperature"].fillna(wall.map(heat.walls)) - one["temperature"]
+    flow = contact_conductance(k_i=k_i, k_j=k_j, radius=radius.to_numpy()) * drop.fillna(0.0).to_numpy()
+    return np.asarray(flow)
 
 
 def cohesive_energy(density: float, one: pd.Series, other: pd.Series, overlap: pd.Series) -> Array:
@@ -255,7 +273,7 @@ def _lost_at_touch(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) 
 def bodies(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The two bodies of each contact: their rows of the frames; a wall has its type and endless radius and mass. NaN:
     there is no such sphere."""
-    known = spheres.set_index(["step", "id"])[["type", "radius", "mass", *"xyz"]]
+    known = spheres.set_index(["step", "id"])[["type", "radius", "mass", *"xyz", *(TEMPERATURE.keys() & {*spheres})]]
     keys = (pd.MultiIndex.from_frame(contacts[["step", body]].astype("int64")) for body in "ij")
     first, second = (known.reindex(key).reset_index(drop=True) for key in keys)
     wall = contacts["wall"].map(p.wall_types).to_numpy()
