@@ -79,7 +79,7 @@ def test_a_friction_above_0_3_names_the_pressure_at_which_the_surface_yields(tmp
     found = json.loads(run("predict", case, "--json"))
     (said,) = (w for w in found["warnings"] if "at its surface" in w)
     Y = 1e9
-    assert f"from a peak pressure of {1.24257 * Y:.3g} Pa (1.24 Y) on" in said
+    assert f"from a peak pressure of {1.24257 * Y / 1e6:.4g} MPa (1.24 Y) on" in said
     speed = found["yield_speeds"]["steel"] * (1.24257 / 1.6) ** 2.5
     assert said.endswith(f"reach at {speed:.3g} m/s")
     assert not json.loads(run("predict", CASES / "oblique_steel.toml", "--json"))["warnings"]

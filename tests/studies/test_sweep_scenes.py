@@ -121,6 +121,14 @@ def test_a_key_with_one_value_a_point_has_lines_from_low_to_high(bed, tmp_path):
     assert series and all(list(x.x) == [5, 10, 20] and x.dash is not None for x in series)
 
 
+def test_a_sweep_of_a_press_draws_densities_springback_and_side_pressure_before_its_other_columns():
+    names = ["stage1_time", "stage1_relative_density", "release1_springback", "stage1_radial_pressure", "density"]
+    table = pd.DataFrame({"point": [1, 2], "k": [0.0, 0.3]} | {name: [1.0, 2.0] for name in names})
+    (chart,) = _by_key(table, ["k"], [], {})
+    assert [panel.y.label for panel in chart.panels] == [*names[1:4], names[0], "density"]
+    assert [series.name for panel in chart.panels for series in panel.series] == ["value"] * 4 + ["check"]
+
+
 def test_the_warnings_of_the_points_stand_in_terminal_table_and_page(bed, tmp_path):
     """A step above the stable one of a contact, at both points."""
     bed.write_text(BED.replace("0.3 s", "0.02 s") + '[numerics]\ntime_step = "0.5 ms"\n')

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.readable import in_words
 from ..laws.strengths import find_law
 from ..theory import validity
 from ..theory.backbone import Backbone
@@ -182,7 +183,8 @@ def _surface_yield(x: Experiment) -> list[str]:
         speed = float(yield_speed(p_y=ratio * b.yield_stress, **pair))
         found[b.material] = (
             f"friction {mu:g}: a sliding contact of {b.material} yields at its surface from a peak pressure of "
-            f"{ratio * b.yield_stress:.3g} Pa ({ratio:.2f} Y) on, which normal impacts reach at {speed:.3g} m/s"
+            f"{in_words(ratio * b.yield_stress, 'Pa')} ({ratio:.2f} Y) on, which normal impacts reach at "
+            f"{speed:.3g} m/s"
         )
     return [*found.values()]
 

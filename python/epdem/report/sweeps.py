@@ -19,6 +19,7 @@ DONE, FAILED = "done", "failed"  # states of points
 KINDS = ("last", "min", "max", "mean")  # numbers of one column of a scene
 DASHES: tuple[Dash, ...] = ("solid", "dash", "dashdot", "dot")  # a curve over another one leaves it visible
 PANEL_COLUMNS, MOST_PANELS = 3, 30  # of a chart
+STAGES = ("_relative_density", "_springback", "_radial_pressure")  # of a press, drawn before its other columns
 
 
 def write_sweep_page(
@@ -106,7 +107,8 @@ def _by_key(table: pd.DataFrame, keys: Sequence[str], measured: Sequence[str], u
     numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1] or ["point"]
     changing = _changing(table.drop(columns=["point", *keys]))
     wanted = [column for column in changing if not measured or column in measured or column in CHECKS]
-    columns = sorted(wanted or changing, key=lambda column: column not in measured)  # stable: else as in the table
+    # stable: else as in the table
+    columns = sorted(wanted or changing, key=lambda column: (column not in measured, not column.endswith(STAGES)))
     shown = columns[:MOST_PANELS]
     left = [column for column in changing if column not in shown]
     charts = []
@@ -141,7 +143,8 @@ def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines:
     table = table.sort_values(key)
     x, series = table[key].to_numpy(float), []
     for kind in kinds:
-        k = KINDS.index(kind) if kind else len(KINDS)  # a check may have the name of a column
+        k = KINDS.index(kind) if kind else len(KINDS)
         y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
-        series.append(Series(kind or "check", x, y, k, DASHES[k % len(DASHES)] if lines else None, k))
+        label = kind or ("check" if column in CHECKS else "value")
+        series.append(Series(label, x, y, k, DASHES[k % len(DASHES)] if lines else None, k))
     return series

@@ -251,7 +251,8 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     """A sentence for each plane of all phases through which spheres have passed: how many, and the largest overlap.
 
     A sphere that is missing in the last frame has passed if its motion until the next frame carries it out of the room
-    through the plane alone.
+    through the plane alone, or if it touched the plane and its motion leaves it in the room: a load between two frames
+    has pressed it through.
     """
     if not p.frames:
         return []
@@ -260,11 +261,13 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     seconds = (last["step"] < p.frame_steps(p.frames)[-1]) * p.frames * p.time_step
     ends = last[[*"xyz"]].to_numpy() + seconds.to_numpy()[:, None] * last[["vx", "vy", "vz"]].to_numpy()
     limits = np.array(p.scene.room.limits).reshape(3, 2)
-    outside = ((ends < limits[:, 0]) | (ends > limits[:, 1])) & (seconds.to_numpy()[:, None] > 0)
+    gone = seconds.to_numpy() > 0
+    outside = ((ends < limits[:, 0]) | (ends > limits[:, 1])) & gone[:, None]
     for wall in p.scene.planes:
         k = "xyz".index(wall.axis)
         beyond = (first.loc[last.index, wall.axis].to_numpy() - wall.at) * (ends[:, k] - wall.at) < 0
-        passed = int((beyond & ~np.delete(outside, k, axis=1).any(axis=1)).sum())
+        pressed = gone & ((last[wall.axis] - wall.at).abs() < last["radius"]).to_numpy() & ~outside.any(axis=1)
+        passed = int(((beyond & ~np.delete(outside, k, axis=1).any(axis=1)) | pressed).sum())
         if not passed:
             continue
         said = f"{passed} of {len(last)} spheres have passed through wall {wall.name}"
