@@ -206,7 +206,9 @@ def warm_kind(name, **keys):
     return data
 
 
-@pytest.mark.parametrize("name", ["drum_beads", "hopper_beads", "settle_glass", "peening_steel", "compaction_powder"])
+@pytest.mark.parametrize(
+    "name", ["drum_beads", "hopper_beads", "settle_glass", "peening_steel", "compaction_powder", "press_tablet"]
+)
 def test_every_kind_takes_temperatures(name):
     p = plan(parse(warm_kind(name)))
     assert set(p.heat.walls) == {w.name for w in p.scene.wall} and set(p.heat.walls.values()) == {350.0}
