@@ -8,6 +8,7 @@
 #include "error.h"
 #include "fix_heat.hpp"
 #include "fix_motion.hpp"
+#include "fix_slowing.hpp"
 #include "fix_wall.hpp"
 #include "fix_wall_mesh.hpp"
 #include "pair_ep.hpp"
@@ -72,6 +73,8 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
   style("fix", FixHeat::style_name, "heat of spheres", reinterpret_cast<void*>(&create_fix<FixHeat>));
   style("fix", FixMotion::style_name, "motion of spheres", reinterpret_cast<void*>(&create_fix<FixMotion>));
   style("fix", FixGravity::style_name, "gravity", reinterpret_cast<void*>(&create_fix<FixGravity>));
+  style("fix", epdem::FixSlowing::style_name, "speed of walls near a force",
+        reinterpret_cast<void*>(&create_fix<epdem::FixSlowing>));
   style("fix", FixTravel::style_name, "travel of walls", reinterpret_cast<void*>(&create_fix<FixTravel>));
   style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes or triangles",
         reinterpret_cast<void*>(&create_wall));

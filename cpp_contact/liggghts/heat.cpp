@@ -9,6 +9,7 @@
 #include "atom.h"
 #include "energy_tally.hpp"
 #include "force.h"
+#include "lammps/fix_slowing.hpp"
 #include "modify.h"
 
 namespace epdem::liggghts {
@@ -29,11 +30,17 @@ template struct StylesOf<&Modify::fix_map>;
 
 constexpr const char *style_name = "heat/ep", *property = "temperature";
 
-Fix* create(LAMMPS* lmp, int count, char** word) { return new FixHeat(lmp, count, word); }
+template <class Style>
+Fix* create(LAMMPS* lmp, int count, char** word) {
+  return new Style(lmp, count, word);
+}
 
 }  // namespace
 
-void FixHeat::add_style(LAMMPS* lmp) { styles_of(*lmp->modify)[style_name] = &create; }
+void add_fix_styles(LAMMPS* lmp) {
+  styles_of(*lmp->modify)[style_name] = &create<FixHeat>;
+  styles_of(*lmp->modify)[FixSlowing::style_name] = &create<FixSlowing>;
+}
 
 FixHeat::FixHeat(LAMMPS* lmp, int count, char** word) : Fix(lmp, count, word) {
   sums_.read(

@@ -7,15 +7,15 @@
 
 namespace epdem::liggghts {
 
+/// Makes the plugin's fixes known to a simulation.
+void add_fix_styles(LAMMPS_NS::LAMMPS* lmp);
+
 /// fix ID all heat/ep SHARE k c [k c ...] [wall NAME T k ...]: conductivity and specific heat of each type; NAME: a fix
 /// wall/gran of a formula, or a fix mesh/surface, with a temperature. fix_modify ID temperature FROM TO T: spheres with
 /// these numbers. Vector: the heat flow into each wall in the last step. A fix property/atom temperature holds the
 /// temperatures; fix insert sets it by `set_property temperature T`.
 class FixHeat final : public LAMMPS_NS::Fix {
  public:
-  /// Makes the style known to a simulation.
-  static void add_style(LAMMPS_NS::LAMMPS* lmp);
-
   FixHeat(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
 
   /// Before each run of a contact model, which computes areas or not: the fix of a simulation; null: none.

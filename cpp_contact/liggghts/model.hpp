@@ -104,7 +104,7 @@ class Model : public ContactModelBase {
       return;
     }
     say_once(lmp, "epdem " EPDEM_VERSION ":" + model_names());
-    FixHeat::add_style(lmp);
+    add_fix_styles(lmp);
   }
 
   /// Settings of LIGGGHTS's models that our loops must know.

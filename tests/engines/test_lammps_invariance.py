@@ -238,6 +238,9 @@ def test_motion_and_gravity_have_the_bits_of_lammps_own(group, tmp_path):
         ("sphere", "gravity/ep 9.81", "fix gravity/ep: the words are ID group gravity/ep gx gy gz"),
         ("atomic", "gravity/ep 0 0 -9.81", "fix gravity/ep needs atom_style sphere"),
         ("sphere", "travel/ep v", "fix travel/ep: the words are ID group travel/ep SPEED TRAVEL"),
+        ("sphere", "slowing/ep f_w sinks 1 0.1 20 1", "fix slowing/ep: the words are ID group slowing/ep FORCE"),
+        ("sphere", "slowing/ep w rises 1 0.1 20 1", "FORCE is the f_ID or c_ID of a force, or its component"),
+        ("sphere", "slowing/ep f_w rises 1N 0.1 20 1", "fix slowing/ep: the words are ID group slowing/ep FORCE"),
     ],
 )
 def test_the_motion_refuses_words_and_points(style, words, sentence, tmp_path):
@@ -245,3 +248,26 @@ def test_the_motion_refuses_words_and_points(style, words, sentence, tmp_path):
         f"atom_style {style}\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\nfix m all {words}\n", tmp_path
     )
     assert code == 1 and sentence in said
+
+
+@pytest.mark.parametrize(
+    ("force", "words", "wanted"),
+    [
+        ("f_w", "rises 8", 1.0),  # of 5 N: far
+        ("f_w", "rises 5.2", 0.2 / 5.2 / 0.1),
+        ("f_w", "rises 4.8", -0.1 * 0.2 / 4.8 / 0.1),  # beyond, back
+        ("f_w", "rises 1", -0.1),
+        ("f_w", "falls 4.8", 0.2 / 4.8 / 0.1),
+        ("f_w[2]", "rises 3.1", 0.1 / 3.1 / 0.1),  # of 3 N
+        ("f_w[3]", "falls 4.1", -0.1 * 0.1 / 4.1 / 0.1),
+    ],
+)
+def test_the_share_of_a_wall_follows_a_constant_force(force, words, wanted, tmp_path):
+    """Exponentially, within 20 steps, from the share that the deck gives."""
+    deck = "atom_style sphere\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\n"
+    deck += "variable x equal 0\nvariable y equal -3\nvariable z equal 4\nfix w all ave/time 1 1 1 v_x v_y v_z\n"
+    deck += f"fix s all slowing/ep {force} {words} 0.1 20 0.7\nrun 30\nprint SHARE=$(f_s:%.15g)\n"
+    code, said = lammps(deck, tmp_path)
+    assert code == 0, said
+    share = float(said.split("SHARE=")[-1].split()[0])
+    assert share == pytest.approx(wanted + (0.7 - wanted) * (1 - 1 / 20) ** 30, rel=1e-12)

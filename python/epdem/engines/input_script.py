@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -140,12 +140,12 @@ class StopCondition:
 
     formula: "" without a condition; limit: its value. look: steps between two looks, fewer as the limit comes near if
     `nears`; apart: these do not stop at rows. loose: formula of the steps in which a bed is too loose to bear a force,
-    "": they are not known. left: formula of the steps that are left to a height, "": no height is awaited. missing:
-    formula of the missing force over that at which the walls slow, "": they do not. share: of their speed, at the begin
-    of a phase or of a continued run. opposite, force: formulas of the force on the wall against a punch and, where a
-    height is awaited, on the punch. stop: commands that bring the walls to rest. void: formula of the height of the
-    void in a pressed bed, which ends the run at 0; "": no bed is pressed. gone: steps with looks before a continued
-    run.
+    "": they are not known. left: formula of the steps that are left to a height, "": no height is awaited. slowing:
+    words of the fix that gives the share of their speed that walls have near their force, but the share at the begin,
+    "": they do not slow. share: at the begin of a phase or of a continued run. opposite, force: formulas of the force
+    on the wall against a punch and, where a height is awaited, on the punch. stop: commands that bring the walls to
+    rest. void: formula of the height of the void in a pressed bed, which ends the run at 0; "": no bed is pressed.
+    gone: steps with looks before a continued run.
     """
 
     first: int
@@ -160,23 +160,17 @@ class StopCondition:
     apart: bool = False
     loose: str = ""
     left: str = ""
-    missing: str = ""
+    slowing: str = ""
     share: str = "1.0"
     opposite: str = ""
     force: str = ""
     stop: tuple[str, ...] = ()
     gone: int = 0
-    lag: ClassVar[int] = LAG  # steps within which the share follows
 
     @property
     def steps(self) -> int:
         """At most, of the rows."""
         return self.rows * self.every
-
-    @property
-    def wanted(self) -> str:
-        """Formula of the share that walls come to have."""
-        return wanted_share("v_missing")
 
 
 def default_skin(p: ScenePlan) -> float:
@@ -215,12 +209,6 @@ def ended_at(run: PhaseSteps) -> list[str]:
     if run.case.condition.force:
         return [f">= {low}", *([] if run.slows is None else [f"<= {high}"])]
     return [f"<= {high}"]
-
-
-def wanted_share(missing: str) -> str:
-    """Formula of the share of its speed that a wall comes to have. missing: name of the missing force over that at
-    which the wall slows."""
-    return f"0.45+0.05*abs({missing}+1)+0.45*abs({missing})-0.5*abs({missing}-1)"
 
 
 BORNE = 0.05  # of the pressure of a stage, that the opposite wall bears at least
@@ -267,8 +255,8 @@ def stop_condition(
         on_wall = f"abs({force(name, axis)})" if axis else f"sqrt({'+'.join(squares)})"
         # a sphere that strikes the punch alone is no pressure
         borne = f"*({opposite}>={number(BORNE * until.limit)})" if opposite and until.force else ""
-        reached, words = f"{on_wall}/{number(until.limit)}", ended_at(run)
-        missing = f"({f'1-{reached}' if until.force else f'{reached}-1'})/{SLOWING}"
+        words, of_fix = ended_at(run), force(name, axis) if axis else force(name, 1).removesuffix("[1]")
+        slowing = f"{of_fix} {'rises' if until.force else 'falls'} {number(until.limit)} {SLOWING} {LAG}"
         return StopCondition(
             first=first,
             rows=(run.steps - first) // p.every,
@@ -281,7 +269,7 @@ def stop_condition(
             nears=run.slows is None,
             apart=run.slows is not None,
             loose="" if run.slows is None else _loose(p, run, place),
-            missing="" if run.slows is None else missing,
+            slowing="" if run.slows is None else slowing,
             opposite=opposite,
             stop=tuple(stop),
         )

@@ -20,7 +20,7 @@ from ...scenes.plan.meshes import spans, surface_rotation
 from ...scenes.plan.phases import LAG, SLOWING, Phase, PhaseSteps
 from ...scenes.plan.plan import ScenePlan
 from ..host import words_of_motion
-from ..input_script import BORNE, bed_height, ended_at, first_look, height_words, torque_origin, wanted_share
+from ..input_script import BORNE, bed_height, ended_at, first_look, height_words, torque_origin
 
 EDGES = (
     "walls of triangles ({}): YADE counts a sphere that touches an edge once for each triangle there, so that its "
@@ -219,8 +219,8 @@ class Stop:
 
     @property
     def wanted(self) -> str:
-        """Formula of the share that walls come to have, of x."""
-        return wanted_share("x")
+        """Formula of the share that walls come to have, of x, as `kernels/wall_slowing.hpp`."""
+        return "max(min(x, 1.0), max(0.1 * min(x, 0.0), -0.1))"
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
