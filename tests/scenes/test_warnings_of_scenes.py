@@ -201,7 +201,7 @@ def test_spheres_that_are_pressed_through_a_plane_are_counted_with_the_overlap(s
     data = parts(wall=[FLOOR], fill=[BED])
     p = plan(parse(data | {"output": {"rows": 4, "particles": 2, "contacts": 2}}))
     begin, middle, end = p.frame_steps(p.frames)
-    at = 1e-3 * np.array([1.0, 1.0, 1.0, 1.0, 1.0])
+    at = 1e-3 * np.array([2.1, 1.0, 1.0, 1.0, 1.0])
     frames = []
     for step, z, there in ((begin, at, 5), (middle, at, 5), (end, at - [0, 0, 0, 2e-3, 2e-3], 4)):
         table = pd.DataFrame({"step": step, "id": [2, 3, 4, 5, 1], "type": 1, "radius": 2e-3, "mass": 1e-5, "z": z})

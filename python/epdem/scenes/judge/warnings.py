@@ -251,8 +251,8 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     """A sentence for each plane of all phases through which spheres have passed: how many, and the largest overlap.
 
     A sphere that is missing in the last frame has passed if its motion until the next frame carries it out of the room
-    through the plane alone, or if it touched the plane and its motion leaves it in the room: a load between two frames
-    has pressed it through.
+    through the plane alone, or if its surface was within a radius of the plane and its motion leaves it in the room: a
+    load between two frames has pressed it through.
     """
     if not p.frames:
         return []
@@ -266,7 +266,7 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     for wall in p.scene.planes:
         k = "xyz".index(wall.axis)
         beyond = (first.loc[last.index, wall.axis].to_numpy() - wall.at) * (ends[:, k] - wall.at) < 0
-        pressed = gone & ((last[wall.axis] - wall.at).abs() < last["radius"]).to_numpy() & ~outside.any(axis=1)
+        pressed = gone & ((last[wall.axis] - wall.at).abs() < 2 * last["radius"]).to_numpy() & ~outside.any(axis=1)
         passed = int(((beyond & ~np.delete(outside, k, axis=1).any(axis=1)) | pressed).sum())
         if not passed:
             continue
