@@ -10,7 +10,7 @@ from plugin_decks import ADHESIVE, P_Y, contact, good, materials, per_pair, plat
 from test_plugin_energy import BOX as CELL
 from test_plugin_energy import SIDES, gas
 from test_plugin_launch import deck as plain_deck
-from test_plugin_launch import refusal, started
+from test_plugin_launch import started
 
 from epdem.theory import adhesion
 from marks import thorough
@@ -154,29 +154,6 @@ def test_surface_energies_give_the_work_of_adhesion(tmp_path):
         done = started(tmp_path / name, both + "dump d all custom 1 out.bin id x y z vx vy vz\nrun 0\n")
         ends.append(done.last)
     assert np.array_equal(*ends) and np.abs(ends[0][:, 6]).min() > 0
-
-
-def test_what_is_asked_of_adhesion_and_cannot_be_is_said_in_one_sentence(tmp_path):
-    base, gamma = materials("ep/any"), materials("ep/jkr")
-    surface = "fix s all property/global surfaceEnergy peratomtype 1 1 1\n"
-
-    def error(name, model, properties, **more):
-        return refusal(tmp_path / name, plain_deck(model, properties=properties, **more))
-
-    assert "both workOfAdhesion and surfaceEnergy are given" in error("both", "ep/jkr", gamma + surface)
-    missing = error("missing", "ep/jkr", base)
-    assert "property/global workOfAdhesion peratomtypepair" in missing and "surfaceEnergy" in missing
-    for law, instead in (("hertz", "ep/jkr"), ("thornton", "ep/thornton_ning")):
-        assert f"has no adhesion; take {instead}" in error(law, f"ep/{law}", gamma)
-    for law in ("johnson", "cavity"):
-        assert "no theory of adhesion exists for it" in error(law, f"ep/{law}", base + surface)
-    cohesion = per_pair("cohesionEnergyDensity", 1e6)
-    for law in ADHESIVE:
-        beside = error(f"sjkr {law}", f"ep/{law}", gamma + cohesion, models="cohesion sjkr")
-        assert "has its attraction already" in beside
-    wrong = gamma.replace("peratomtypepair 3 600.0", "peratomtypepair 3 -600.0")
-    assert "workOfAdhesion = -600 [J/m^2] of types 1 and 1" in error("negative", "ep/jkr", wrong)
-    assert "limitForce" in error("limit", "ep/jkr", gamma, settings="limitForce on")
 
 
 @pytest.mark.parametrize("share", [0.95, 1.05])

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, Bodies, good, head, materials, run
+from plugin_decks import LAWS, Bodies, good, head, materials
 
 pytestmark = pytest.mark.liggghts
 
@@ -70,13 +70,6 @@ def test_two_ranks_book_the_same_energy(tmp_path):
     one = balance(tmp_path / "one", deck("thornton", steps=4000, every=50))
     two = balance(tmp_path / "two", deck("thornton", steps=4000, every=50, ranks=(2, 1, 1)), ranks=2)
     assert np.allclose(one, two, rtol=1e-12, atol=1e-18) and one[-1, 2] > 0
-
-
-def test_a_wall_alone_is_refused_as_the_pair_style_keeps_the_books(tmp_path):
-    text = deck("thornton", steps=10, every=10, pair_setting="")
-    text = text.replace("compute s", "# ").replace("c_s[1] c_s[2]", "")
-    result = run(tmp_path, text, files={"box.data": gas().data(BOX)})
-    assert result.code == 1 and "computePlasticWork" in result.error and "pair style" in result.error
 
 
 def test_loaded_contacts_are_those_with_a_force(tmp_path):

@@ -143,14 +143,6 @@ def test_stored_wall_history_is_the_largest_overlap(tmp_path, law):
     assert touched.any()
 
 
-def test_newton_on_is_refused_by_liggghts_itself(tmp_path):
-    from plugin_decks import run
-
-    text = deck("thornton", wall="primitive").replace("newton off", "newton on")
-    result = run(tmp_path, text, files={"box.data": spheres().data(BOX)})
-    assert result.code == 1 and "newton" in result.error
-
-
 @pytest.mark.parametrize("law", YIELDING)
 def test_an_evaluation_that_is_not_kept_leaves_no_trace(tmp_path, law):
     """Must 6: `run 0` at a deeper overlap evaluates every contact, and must not dent it."""

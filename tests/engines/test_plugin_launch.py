@@ -98,6 +98,10 @@ def test_the_library_can_be_preloaded_into_an_unmodified_liggghts(tmp_path):
     assert text.count("epdem ") == 1 and "Loop time" in text
 
 
+def test_the_preloaded_library_names_its_models(tmp_path):
+    assert NAMES in refusal(tmp_path, deck("ep/thorton"), command="liggghts", preload=library())
+
+
 def test_many_launches_at_once_all_start(tmp_path):
     """Open MPI's shared session directory made one of thirty fail."""
     (tmp_path / "in.nothing").write_text("units si\n")
@@ -114,22 +118,6 @@ def test_an_error_on_one_rank_is_not_lost_on_a_pipe(tmp_path):
     """error->one ends in MPI_Abort: must 12. A missing input file is such an error."""
     done = subprocess.run([launcher(), "-in", "nowhere"], cwd=tmp_path, capture_output=True, check=False)
     assert done.returncode == 1 and b"ERROR" in done.stdout and b"nowhere" in done.stdout
-
-
-@pytest.mark.parametrize("preloaded", [False, True])
-def test_the_refusal_of_a_wrong_name_lists_what_exists(tmp_path, preloaded):
-    how = {"command": "liggghts", "preload": library()} if preloaded else {}
-    assert NAMES in refusal(tmp_path / "a", deck("ep/thorton"), **how)
-    wrong_wall = deck(edit=lambda t: t.replace("wall/gran model ep/thornton", "wall/gran model ep/x"))
-    assert NAMES in refusal(tmp_path / "b", wrong_wall, **how)
-    assert "Invalid model" in refusal(tmp_path / "c", deck("hertzz"), **how)
-
-
-@pytest.mark.parametrize(
-    "extra", ["rolling_friction luding", "cohesion washino/capillary/viscous", "surface superquadric"]
-)
-def test_a_combination_that_does_not_exist_is_refused_with_those_that_do(tmp_path, extra):
-    assert "epdem's models combine with" in refusal(tmp_path, deck(models=extra))
 
 
 COMBINATIONS = [

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, NU, Bodies, E, contact, good, head, materials, per_pair, run
+from plugin_decks import LAWS, NU, Bodies, E, contact, good, head, materials, per_pair
 from test_plugin_energy import balance, deck
 
 from epdem.theory import pair
@@ -123,18 +123,3 @@ def test_the_energy_balance_of_a_rubbing_gas_closes(tmp_path, law):
     assert np.abs(total / kinetic[0] - 1).max() < 2e-3
     assert friction[-1] > 0.2 * kinetic[0] and springs.max() > 1e-4 * kinetic[0]
     assert np.diff(friction).min() > -1e-12 * kinetic[0]
-
-
-WRONG = {
-    "tangential ep/partial_slip goes with the normal models of epdem only": ("hertz", SLIP),
-    "unknown tangential model: the models of epdem are ep/partial_slip ep/partial_slip_2": ("ep/hertz", "ep/slip"),
-    "unknown normal model": ("ep/hurtz", SLIP),
-}
-
-
-@pytest.mark.parametrize("text", WRONG)
-def test_wrong_names_are_refused_with_what_there_is(tmp_path, text):
-    model, tangential = WRONG[text]
-    start = "units si\natom_style granular\nnewton off\ncommunicate single vel yes\nregion b block 0 1 0 1 0 1\n"
-    result = run(tmp_path, start + f"create_box 1 b\npair_style gran model {model} tangential {tangential}\n")
-    assert result.code == 1 and text in result.error

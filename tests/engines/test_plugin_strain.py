@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, head, materials, plate, run
+from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, head, materials, plate
 from plugin_loop import ADHESIVE, SPACING, Scene, bodies, covering, deck, outcome
 
 from epdem.theory import backbones, pair, restitution
@@ -121,10 +121,3 @@ def test_the_largest_strain_stays_when_its_sphere_leaves(tmp_path, way, ranks):
     last = [line.split() for line in out.splitlines() if re.fullmatch(r" *\d+ +[\d.e-]+ +[\d.e-]+ +\d+ *", line)][-1]
     assert last[3] == "1"
     np.testing.assert_allclose(np.array(last[1:3], float), expected("thornton"), rtol=3e-4)
-
-
-def test_a_wall_that_records_alone_is_refused(tmp_path):
-    text = impact("thornton", "primitive", steps=10, every=10).replace(ROWS, "")
-    text = text.replace(f" {ON}\npair_coeff", "\npair_coeff")
-    done = run(tmp_path, text, files=files())
-    assert done.code == 1 and "computeContactStrain" in done.error and "pair style" in done.error
