@@ -169,32 +169,3 @@ def test_a_name_that_a_template_reads_is_in_the_plan_or_the_deck(path):
     names_read(path, deck_of(path))
 
 
-def test_names_of_loops_macros_and_other_files_are_read():
-    """Of each host a name that stands in a loop, or in a macro of another file."""
-    found = {name: names_read(TEMPLATES / name, deck_of(TEMPLATES / name)) for name in SCENES}
-    for name, read in SCENES.items():
-        assert read <= found[name]
-
-
-SCENES = {
-    "liggghts/scene.in.j2": {("StopCondition", "rows"), ("InsertFix", "rate"), ("PhaseSteps", "upto")},
-    "liggghts/scene_setup.in.j2": {("Property", "comment"), ("SurfaceMesh", "keywords"), ("WallLoad", "variables")},
-    "lammps/scene.in.j2": {("StopCondition", "rows"), ("PhaseSteps", "end_frames"), ("DeckWall", "regions")},
-    "yade/scene.py.j2": {("DeckFill", "batch"), ("DeckMotion", "begin"), ("PairValue", "matches")},
-}
-
-
-@pytest.mark.parametrize(
-    ("text", "wrong"),
-    [
-        ("{{ deck.plan.steeps }}", "ScenePlan have no steeps"),
-        ("{% for p in deck.phases %}{{ p.run.colour }}{% endfor %}", "PhaseSteps have no colour"),
-        ("{% macro m(p) %}{{ p.stop.row }}{% endmacro %}{% for p in deck.phases %}{{ m(p) }}{% endfor %}", "no row"),
-        ('{% import "liggghts/macros.j2" as macros %}{{ macros.pair(deck.plan) }}', "ScenePlan have no contact"),
-    ],
-)
-def test_a_name_that_the_plan_lacks_fails(text, wrong, tmp_path):
-    path = tmp_path / "scene.in.j2"
-    path.write_text(text)
-    with pytest.raises(AssertionError, match=wrong):
-        names_read(path, liggghts.SceneDeck)

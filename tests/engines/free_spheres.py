@@ -46,6 +46,7 @@ class Scene:
     compaction: bool = False
     gravity: float = 0.0
     every: int = 1
+    piece: int = 0  # steps of each run of LIGGGHTS and LAMMPS; 0: one run
     mesh: bool = False  # LIGGGHTS: the plane is of triangles
     loop: str = ""  # EPDEM_LOOP of LIGGGHTS
 
@@ -69,7 +70,8 @@ class Scene:
     def runs(self):
         """Lines of LIGGGHTS and LAMMPS: free flight, or the moves."""
         moved = "fix go all move linear {!r} {!r} {!r}\nrun {}\nunfix go\n"
-        free = f"fix move all nve/sphere\nrun {self.steps}\n"
+        piece = self.piece or self.steps or 1
+        free = "fix move all nve/sphere\n" + f"run {min(piece, self.steps)}\n" * max(1, self.steps // piece)
         return "".join(moved.format(*map(float, v), n) for v, n in self.moves) or free
 
     def names(self):

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
-from free_spheres import ELASTIC, FORCE, HOSTS, PLASTIC, VELOCITY, Scene, frames
-from hosts import ADHESIVE, LAWS, on
+from free_spheres import ELASTIC, FORCE, HOSTS, PLACE, PLASTIC, SPIN, VELOCITY, Scene, frames
+from hosts import ADHESIVE, LAMMPS, LAWS, LIGGGHTS, on
 
 import oblique
-from epdem.theory import backbones, pair, partial_slip, restitution
+from epdem.theory import adhesion, backbones, pair, partial_slip, restitution
 from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 
@@ -309,3 +309,28 @@ def test_the_friction_of_an_attached_sphere_is_limited_by_the_force_and_twice_it
     branch, _ = c.branch(c.radius(lies))
     assert law != "jkr" or abs(force[2]) < 1e-9 * c.pull_off_force
     assert -force[0] == pytest.approx(0.4 * (force[2] + 2 * float(branch.pull_off_force)), rel=1e-9)
+
+
+@pytest.mark.parametrize(("host", "law"), on([LIGGGHTS, LAMMPS], [*ADHESIVE, "thornton"]))
+@pytest.mark.parametrize("slip", [0.0, 0.2])
+def test_a_run_that_stops_after_every_step_is_the_whole_run(host, law, slip, tmp_path):
+    """Also in the steps in which contacts form and end, of which the next setup must repeat the force.
+
+    slip: over the speed. Without it LIGGGHTS keeps every bit.
+    """
+    material, c = sticky(law if law in ADHESIVE else "jkr")
+    R, m = R_ADHESIVE, mass(R_ADHESIVE) / 2
+    V = 3 * float(adhesion.sticking_speed(c, m_star=m))
+    dt = float(adhesion.contact_time(c, m_star=m, speed=V)) / 30
+    x = [[0, 0, 5 * R], [0, 0, 7 * R + 2.3 * dt * V], [5 * R, 0, R + 2.3 * dt * V]]
+    v = V * np.array([[0, 0, 0], [slip, 0, -1], [slip, slip / 2, -1]])
+    friction = {"tangential": "history" if law in ADHESIVE else "partial_slip", "friction": 0.3}
+    more = {"radius": R, "plane": 0, "every": 90} | friction
+    whole, parts = (
+        frames(host, tmp_path / str(n), Scene(law, [material], x, v, dt, 90, **more, piece=n))[-1] for n in (90, 1)
+    )
+    assert whole[2, 5] > 0.1 * V and whole[0, 5] < whole[1, 5] - 0.1 * V
+    assert (np.abs(whole[:, SPIN]).max() > 0.1 * slip * V / R) == (slip > 0)
+    limit = 0.0 if host == "liggghts" and slip == 0 else 1e-12 if host == "liggghts" else 1e-10
+    for part in (PLACE, VELOCITY, SPIN):
+        assert np.abs(whole[:, part] - parts[:, part]).max() <= limit * np.abs(whole[:, part]).max()

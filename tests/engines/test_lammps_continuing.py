@@ -100,22 +100,6 @@ def test_a_wall_that_moves_goes_on_in_runs_of_one_step(what, law, tmp_path):
     assert np.abs(whole - parts).max() <= 5e-3 * np.abs(whole[:, 4:]).max()
 
 
-@pytest.mark.parametrize("law", ["jkr 1e8 0.3 5", "thornton_ning 1e8 0.3 5 4e5"])
-def test_a_contact_by_adhesion_goes_on_in_runs_of_one_step(law, tmp_path):
-    """Contacts of two spheres and with a wall form and part in last steps of runs; no dashpot sees velocities."""
-    law = f"{law} tangential history 0.3"
-    deck = (
-        spheres((0, 0, 0.010002), (0, 0.020002, 0.010002), pair=law) + f"fix floor all wall/ep zplane 0.0 NULL {law}\n"
-    )
-    deck += "velocity all set 0.02 0.04 -0.03\ngroup one id 1\nvelocity one set NULL 0.1 NULL\n"
-    deck += "fix motion all nve/sphere\ntimestep 4e-6\n"
-    _, whole = run(f"{deck}run 1200\n{DUMP}", tmp_path / "whole")
-    pieces = "variable k loop 1200\nlabel again\nrun 1 post no\nnext k\njump SELF again\n"
-    _, parts = run(deck + pieces + DUMP, tmp_path / "parts")
-    assert (whole[:, 6] > 0).all() and abs(whole[0, 5] - 0.1) > 0.01  # both left the wall, and met each other
-    assert np.abs(whole - parts).max() <= 1e-9 * np.abs(whole[:, 4:]).max()
-
-
 AGAIN = "clear\natom_modify map array\ncomm_modify vel yes\nread_restart here\nneighbor 0.002 bin\n"
 STRAIN = """fix motion all nve/sphere
 timestep 2e-6

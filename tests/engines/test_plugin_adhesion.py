@@ -202,19 +202,3 @@ def test_rolling_models_and_two_walls_run(tmp_path, law):
         )
         assert done.code == 0, done.error
     assert contact(f"ep/{law}")
-
-
-@every_law
-def test_a_run_that_stops_after_every_step_gives_the_same_bits(tmp_path, law):
-    """Also in the steps in which contacts form and end, of which the next setup must repeat the force."""
-    c = theory(law, 1, 1, R, R)
-    V = 3 * float(adhesion.sticking_speed(c, m_star=mass() / 2))
-    dt = float(adhesion.contact_time(c, m_star=mass() / 2, speed=V)) / 30
-    ends = []
-    for runs in ("run 60\n", "run 1\n" * 60):
-        x = [[0, 0, 5 * R], [0, 0, 7 * R + 2.3 * dt * V], [0.01, 0, R + 2.3 * dt * V]]
-        bodies = spheres(x, [[0, 0, 0], [0, 0, -V], [0, 0, -V]])
-        text = deck(law, wall="primitive", dt=dt, tangential="history", body="fix move all nve/sphere\n" + runs)
-        frames = good(tmp_path / str(len(runs)), text, files={"box.data": bodies.data(BOX)}).frames()[1]
-        ends.append(frames[-1][:, 1:7])
-    assert np.array_equal(*ends) and ends[0][2, 5] > 0.1 * V and ends[0][1, 5] > ends[0][0, 5] + 0.1 * V  # they part

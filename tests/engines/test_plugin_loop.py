@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from plugin_decks import run
 from plugin_loop import (
-    DIMENSIONS,
     NAMED,
     SAID,
     SAID_OF_WALLS,
@@ -38,13 +37,6 @@ def instruction_sets():
     return found
 
 
-def test_the_scenes_meet_every_two_values():
-    assert len(SCENES) < 60
-    for name, values in DIMENSIONS.items():
-        if name in vars(SCENES[0]):
-            assert {getattr(s, name) for s in SCENES} == {*values, *WITH_ADHESION[name]}
-
-
 @pytest.mark.parametrize(
     "scene", [thorough(s, unless=s in NAMED or n % 3 == 0, id=str(s)) for n, s in enumerate(SCENES)]
 )
@@ -59,18 +51,6 @@ def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
         ours, text = outcome(tmp_path / simd, scene, simd=simd)
         assert SAID not in text and SAID_OF_WALLS not in text
         assert np.array_equal(ours, theirs), f"{simd}: {np.abs(ours - theirs).max()}"
-
-
-def touching(text):
-    """Numbers of contacts, one per step."""
-    rows = [line.split() for line in text.splitlines()]
-    return [int(r[2]) for r in rows if len(r) == 3 and r[0].isdigit() and r[1] == "108"]
-
-
-def test_in_loose_scenes_contacts_open_and_close(tmp_path):
-    """Else they would not be tested."""
-    n = touching(outcome(tmp_path, Scene(loose=True))[1])
-    assert len(n) == 61 and min(np.diff(n)) < 0 < max(np.diff(n))
 
 
 @pytest.mark.parametrize("law", ["hertz", "cavity", "thornton_ning"])

@@ -122,27 +122,6 @@ def test_state_belongs_to_objects():
         assert state_of(path.read_text()) == [], path
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "Bins bins;  // as LIGGGHTS filled its bins last",
-        "bool deletes = false;",
-        "long mesh_searches = 0;",
-        "std::vector<double*> rows{};",
-        "  static Simulation last;",
-        "  static std::vector<int> all;",
-        "  static loop::NearTest test;  // of all triangles",
-        "  static LAMMPS* known = nullptr;",
-        "  static std::atomic<bool> waits{false};",
-        "  static inline Model* latest = nullptr;",
-        "  static double single[9];",
-        "std::map<FixWallGran*, MeshState> kept() {",
-    ],
-)
-def test_the_test_of_state_finds(line):
-    assert state_of(line)
-
-
 def test_a_recipe_of_easybuild_is_python_with_its_keys():
     for path in (ROOT / "packaging/easybuild").glob("*.eb"):
         given: dict[str, object] = {}
