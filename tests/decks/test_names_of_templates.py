@@ -167,5 +167,3 @@ def names_read(path: Path, deck: type) -> set[tuple[str, str]]:
 @pytest.mark.parametrize("path", OF_DECKS, ids=lambda path: str(path.relative_to(TEMPLATES)))
 def test_a_name_that_a_template_reads_is_in_the_plan_or_the_deck(path):
     names_read(path, deck_of(path))
-
-

@@ -225,15 +225,16 @@ CIRCLES = {"sjkr": lambda R, r, d: np.pi * (R**2 - ((R + r - d) / 2 + (R**2 - r*
 CIRCLES["sjkr2"] = lambda R, r, d: 4 * np.pi * R * r / (R + r) * d
 
 
-@pytest.mark.parametrize(("host", "law", "cohesion"), on(HOSTS, LAWS, ["off", "sjkr", "sjkr2"]))
-@pytest.mark.parametrize("mesh", [False, True])
-def test_forces_of_law_and_cohesion_of_both_contacts_of_a_sphere_add_up(host, law, cohesion, mesh, tmp_path):
+COHESIONS = on(HOSTS, LAWS, ["off", "sjkr", "sjkr2"]) + on([LIGGGHTS], LAWS, ["sjkr mesh"])
+
+
+@pytest.mark.parametrize(("host", "law", "cohesion"), COHESIONS)
+def test_forces_of_law_and_cohesion_of_both_contacts_of_a_sphere_add_up(host, law, cohesion, tmp_path):
     """On the wall and below another one, overlaps of 0.2 mm below yield: Hertz less energy density times an area.
 
     sjkr: of the circle in which the surfaces meet; sjkr2: 4 pi R* times the overlap, of which a wall has half.
     """
-    if mesh and (host != "liggghts" or cohesion != "sjkr"):
-        pytest.skip("a wall of triangles in LIGGGHTS, once")
+    cohesion, _, mesh = cohesion.partition(" ")
     R, r, d, density = 0.01, 0.006, 2e-4, 1e6
     soft, softer = ({"E": E, "nu": nu, "density": 7850.0} for E, nu in ((1e9, 0.3), (5e8, 0.2)))
     hard = {"yieldPressure": 1e9, "yieldStress": 1e9, "hardeningExponent": 0.3}
@@ -243,19 +244,21 @@ def test_forces_of_law_and_cohesion_of_both_contacts_of_a_sphere_add_up(host, la
         x=[[0, 0, R - d], [0, 0, 2 * R - d + r - d]],
         v=np.zeros((2, 3)),
         dt=1e-9,
+        steps=1,
         radius=[R, r],
         kinds=[0, 1],
         plane=0,
         cohesion=(cohesion, density if cohesion != "off" else 0.0),
-        mesh=mesh,
+        mesh=bool(mesh),
     )
-    force = frames(host, tmp_path, scene)[0, :, FORCE]
+    found = frames(host, tmp_path, scene)[..., FORCE]  # of the start, which LIGGGHTS's loop computes, and of a step
     E = [pair.E_star(1e9, 0.3, *other) for other in ((1e9, 0.3), (5e8, 0.2))]
     wall, above = (4 / 3 * float(e) * np.sqrt(s) * d**1.5 for e, s in zip(E, (R, R * r / (R + r)), strict=True))
     if cohesion != "off":
         at_wall = np.pi * (R**2 - (R - d) ** 2) if cohesion == "sjkr" else 2 * np.pi * R * d
         wall, above = wall - density * at_wall, above - density * CIRCLES[cohesion](R, r, d)
-    assert np.allclose(force, [[0, 0, wall - above], [0, 0, above]], rtol=1e-9, atol=1e-12)
+    for force in found:
+        assert np.allclose(force, [[0, 0, wall - above], [0, 0, above]], rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize(("host", "law"), on(HOSTS, [law for law in LAWS if law != "hertz"]))

@@ -2,7 +2,11 @@
 """Case files, decks and runs for the tests of scenes."""
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from epdem.base.files import write_texts
 from epdem.case.scene import SceneCase
@@ -39,6 +43,19 @@ def write_deck(case: SceneCase, folder: Path) -> ScenePlan:
 def run(path: Path, engine: str = "liggghts", **options) -> scene_run.SceneOutcome:
     """Run a case file on an engine."""
     return scene_run.run(path, scene_engine(engine), **options)
+
+
+def in_hosts(data: dict, folder: Path, *hosts: str) -> list[Any]:
+    """The results of a case on each host."""
+    path = write_case(data, folder)
+    return [run(path, engine=host, out=folder / host).results for host in hosts]
+
+
+def assert_alike(ours: Any, theirs: Any, names: Iterable[str], limit: float) -> None:
+    """The columns of two tables differ by at most `limit` of their largest value."""
+    for name in names:
+        off, largest = np.abs(ours[name] - theirs[name]).max(), np.abs(theirs[name]).max()
+        assert off <= limit * largest, (name, off, largest)
 
 
 def restart_steps(folder: Path) -> list[int]:

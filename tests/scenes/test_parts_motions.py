@@ -69,15 +69,24 @@ def assert_the_lid_shakes_on(found) -> None:
     assert place[late] == pytest.approx(2e-3 + 1e-3 * np.sin(2 * math.pi * 60 * time[late]), abs=2e-5)
 
 
-@pytest.mark.liggghts
-@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear", "press"])
-def test_energy_closes_with_the_work_of_walls_that_move(kind, tmp_path):
-    outcome = run(write_case(moved(kind), tmp_path), out=tmp_path / "out")
+HOSTS = [
+    pytest.param(name, marks=mark) for name, mark in (("liggghts", pytest.mark.liggghts), ("lammps", needs_lammps))
+]
+IN_YADE = [pytest.param("yade", kind, marks=pytest.mark.yade("module")) for kind in ("vibrate", "rotate")]
+MOVED = [pytest.param(*h.values, k, marks=h.marks) for h in HOSTS for k in ("vibrate", "rotate", "linear", "press")]
+
+
+@pytest.mark.parametrize(("host", "kind"), MOVED + IN_YADE)
+def test_energy_closes_with_the_work_of_walls_that_move(host, kind, tmp_path):
+    outcome = run(write_case(moved(kind), tmp_path), engine=host, out=tmp_path / "out")
     balance = outcome.results.energy_balance
     assert outcome.passed, outcome.results.checks
     if kind == "vibrate":
         assert_the_lid_shakes_on(outcome.results)
     assert abs(balance["work"]).max() > 0.1 * balance["kinetic"].max() > 0  # so that it counts
+    if host == "yade":
+        assert {"floor", "box", "beater", "lid"} >= {*outcome.results.contacts["wall"]} - {""}
+        assert not any("once for each triangle" in text for text in outcome.warnings), "rectangles are one body"
 
 
 @pytest.mark.liggghts
@@ -106,9 +115,7 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should():
     assert not planned_warnings(given) and not planned_warnings(p)
 
 
-@pytest.mark.parametrize(
-    "engine", [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("lammps", marks=needs_lammps)]
-)
+@pytest.mark.parametrize("engine", HOSTS)
 def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(engine, tmp_path):
     hold = {
         "wall": "lid",

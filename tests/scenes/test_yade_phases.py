@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, own, parts
-from scene_runs import run, write_case
+from scene_runs import assert_alike, in_hosts, run, write_case
 from test_parts_motions import BOX, FALL, PLATE
 
 from engines.lammps_decks import needs_lammps
@@ -60,8 +60,7 @@ def balls(**scene):
 def test_spheres_gates_and_conditions_do_the_same_in_both_engines(until, move, tmp_path):
     """Motions that go on over the end of a phase that ends early."""
     phases = [FALL | {"until": until, "move": [move]}, FALL | {"name": "on", "duration": "8 ms", "move": [move]}]
-    path = write_case(balls(phase=phases), tmp_path)
-    ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("yade", "liggghts"))
+    ours, theirs = in_hosts(balls(phase=phases), tmp_path, "yade", "liggghts")
     ends = ["phase", "begin", "end", "until"]
     assert ours.phases[ends].equals(theirs.phases[ends]) and ours.phases["until"].iloc[0] == "reached"
     assert 0 < ours.phases["end"].iloc[0] < 0.5 * 0.06 / 5e-6
@@ -193,13 +192,11 @@ def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(tmp_pat
     data = parts(wall=[FLOOR, lid], fill=[], body=body, phase=phases, gravity="0 m/s^2")
     data |= {"contact": {"friction": 0.3}, "numerics": {"time_step": "4e-6 s"}}
     data["output"] = {"rows": 100, "particles": 2, "loads": True}
-    path = write_case(data, tmp_path)
-    theirs = run(path, engine="liggghts", out=tmp_path / "liggghts").results.rows
-    for name in ("lammps", "yade"):
-        ours = run(path, engine=name, out=tmp_path / name).results.rows
-        for column in ("lid_force_x", "lid_force_z", "floor_force_z", "kinetic_energy"):
-            off, largest = np.abs(ours[column] - theirs[column]).max(), np.abs(theirs[column]).max()
-            assert off <= 1e-6 * largest > 0, (name, column)
+    theirs, *others = (found.rows for found in in_hosts(data, tmp_path, "liggghts", "lammps", "yade"))
+    columns = ["lid_force_x", "lid_force_z", "floor_force_z", "kinetic_energy"]
+    for ours in others:
+        assert_alike(ours, theirs, columns, 1e-6)
+    assert (np.abs(theirs[columns]).max() > 0).all()
 
 
 @pytest.mark.liggghts
@@ -222,8 +219,7 @@ def test_a_plate_shakes_spheres_of_a_periodic_room_as_in_liggghts(size, tmp_path
         wall=[FLOOR, lid], fill=[], body=body, periodic=True, phase=[FALL | {"duration": "24 ms", "move": [SHAKE]}]
     )
     data |= {"numerics": {"time_step": "5e-6 s"}, "output": {"rows": 24, "particles": 24, "loads": True}}
-    path = write_case(data, tmp_path)
-    ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("yade", "liggghts"))
+    ours, theirs = in_hosts(data, tmp_path, "yade", "liggghts")
     one, other = (r.particles.set_index(["step", "id"]) for r in (ours, theirs))
     one, other = one.loc[one.index.intersection(other.index)], other.loc[one.index.intersection(other.index)]
     way = (one[["x", "y", "z"]] - other[["x", "y", "z"]]).to_numpy()

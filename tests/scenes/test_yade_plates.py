@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from parts_cases import parts
-from scene_runs import run, write_case
+from scene_runs import in_hosts, run, write_case
 from test_parts_motions import PLATE
 
 from epdem.case.scene import parse
@@ -82,8 +82,7 @@ def test_spheres_under_a_moving_plate_yield_as_in_liggghts(tmp_path):
     data["scene"]["gravity"] = "0 m/s^2"
     data["output"] = {"rows": 10, "particles": 10, "energy": True, "loads": True}
     data["numerics"] = {"time_step": "2e-6 s"}
-    path = write_case(data, tmp_path)
-    ours, theirs = (run(path, engine=e, out=tmp_path / e).results for e in ("yade", "liggghts"))
+    ours, theirs = in_hosts(data, tmp_path, "yade", "liggghts")
     force, other = (r.rows[["lid_force_z", "base_force_z"]].to_numpy() for r in (ours, theirs))
     assert force == pytest.approx(other, abs=1e-6 * np.abs(other).max())
     assert np.abs(other).max() > 4 * hertz(1e-6), "pressed"
