@@ -184,6 +184,48 @@ def test_a_corner_has_a_contact_with_each_of_its_faces(tmp_path):
         assert column(out, f"f_w[{axis}]")[0] == pytest.approx(column(plane, "f_w[3]")[0], rel=1e-9)
 
 
+PERIODIC = "boundary p p f"
+ROOM = ((-0.1, 0.1), (-0.1, 0.1))
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_sphere_crosses_a_periodic_face_as_the_middle_of_the_box(ranks, tmp_path):
+    """Heavy, it dents tiles along y past a face, and hits a post through the other face."""
+    post = np.array([[(0, -0.1, 0), (0, 0.1, 0), (0, 0.1, 0.03)], [(0, -0.1, 0), (0, 0.1, 0.03), (0, -0.1, 0.03)]])
+    found = []
+    for name, start, at in (("face", (0.06, 0.09), -0.095), ("middle", (-0.07, -0.03), -0.025)):
+        folder = tmp_path / name
+        folder.mkdir()
+        wall = [*tiles(*ROOM, 40, 40), *(post + np.array([at, 0.0, 0.0]))]
+        (folder / "f.stl").write_text(stl_text("f", np.array(wall)))
+        fall = "fix fall all gravity 300 vector 0 0 -1\n"
+        text = rebounds(f"fix w all wall/ep mesh f.stl {FRICTION}\n", (*start, R), "2 1 0", 40000, FRICTION, fall)
+        _, (row,) = run(text.replace("boundary f f f", PERIODIC), folder, ranks=ranks)
+        found.append(row)
+    one, two = found
+    assert one[4] < -0.05 and one[2] < 0 and two[2] < 0.1
+    way = one[1:3] - two[1:3] - [0.13, 0.12]
+    assert np.abs(way - 0.2 * np.round(way / 0.2)).max() < 1e-9
+    assert np.abs(one[3:] - two[3:]).max() <= 1e-9 * np.abs(one[7:]).max()
+
+
+def test_a_periodic_floor_moves_by_periods_as_an_endless_one(tmp_path):
+    folder = tmp_path / "mesh"
+    folder.mkdir()
+    (folder / "f.stl").write_text(stl_text("f", tiles(*ROOM, 4, 4)))
+    move = "move v_x NULL NULL"
+    region = f"region b block INF INF INF INF -0.01 0 side out {move} units box\nfix w all wall/ep/region b {HARD}\n"
+    fall = "fix fall all gravity 9.81 vector 0 0 -1\n"
+    found = []
+    for wall, place in ((region, tmp_path / "block"), (f"fix w all wall/ep mesh f.stl {move} {HARD}\n", folder)):
+        text = rebounds(wall, (0.0, 0.0, R), "0 0.3 0", 100000, HARD, fall).replace("boundary f f f", PERIODIC)
+        out, (row,) = run("variable x equal 5*step*dt\n" + text, place)
+        found.append((column(out, "f_w[3]"), row))
+    (one, a), (two, b) = found
+    assert a[4] > 0.2 and (one > 0).mean() > 0.9
+    assert np.abs(a[1:] - b[1:]).max() <= 1e-6 and np.abs(one - two).max() <= 1e-6 * one.max()
+
+
 MOTIONS = {
     "linear": ("variable z equal 0.2*step*dt\n", "move NULL NULL v_z"),
     "vibrate": ("variable z equal 0.002*sin(800*step*dt)\n", "move NULL NULL v_z"),

@@ -3,8 +3,9 @@
 
 import math
 
+import numpy as np
 import pytest
-from parts_cases import FLOOR, parts
+from parts_cases import FLOOR, parts, write_stl
 from scene_runs import run, write_case
 
 from engines.lammps_decks import needs_lammps
@@ -52,6 +53,24 @@ def test_a_servo_beside_dashpots_reaches_its_force(engine, tmp_path):
     assert not [said for said in outcome.warnings if "the force of wall lid" in said]
     (said,) = [said for said in planned_warnings(outcome.plan) if "oscillate" in said]
     assert "scene.phase.press.move: " in said and "highest_speed = 0.2 m/s; where spheres touch it, it has at" in said
+
+
+@pytest.mark.parametrize("engine", HOSTS[:2])
+def test_a_force_drives_an_stl_wall_as_it_drives_a_plate(engine, tmp_path):
+    """The gap is no whole number of steps: whether the first touch comes a step later would hang on rounding."""
+    corners = 0.009 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    square = np.column_stack([corners, np.full(4, 3.0504e-3)])
+    stl = {"name": "lid", "kind": "stl", "file": "lid.stl", "material": "steel"}
+    forces = []
+    for lid in (LID | {"material": "steel", "center": ["0 mm", "0 mm", "3.0504 mm"]}, stl):
+        data = pressed() | {"output": {"rows": 40, "energy": True}}
+        data["scene"]["wall"] = [FLOOR, lid]
+        path = write_case(data, tmp_path / lid["kind"])
+        write_stl(tmp_path / lid["kind"] / "lid.stl", square[[[0, 1, 2], [0, 2, 3]]])
+        rows = run(path, engine, out=tmp_path / lid["kind"] / "out").results.rows
+        forces.append(rows["lid_force_z"].to_numpy())
+    assert forces[0][-1] == pytest.approx(0.05, rel=1e-3)
+    assert np.abs(forces[1] - forces[0]).max() <= 1e-6 * 0.05
 
 
 @pytest.mark.parametrize("engine", HOSTS)
