@@ -289,6 +289,18 @@ def test_what_shot_takes_along_when_it_leaves_the_room_stays_in_the_ledger():
     assert np.abs(found["balance"]).max() < 1e-12
 
 
+def test_a_sphere_that_comes_in_after_another_has_left_is_no_energy_from_nothing():
+    """Three spheres in uniform motion; two are in the room at most, so that no frame has all of them."""
+    p = planned("peening")
+    table = frames(p, [{"vz": 30.0}, {"vz": -20.0}, {"vz": -10.0}])
+    steps = table["step"].unique()
+    there = {1: (0, 7), 2: (5, 20), 3: (9, 20)}
+    inside = [steps[there[x.id][0]] <= x.step <= steps[there[x.id][1]] for x in table.itertuples()]
+    no_contacts = pd.DataFrame(columns=["step", "elastic_energy"])
+    found = energy_balance(p, {"rows": rows(p), "particles": table[inside], "contacts": no_contacts})
+    assert found["step"].iloc[0] == steps[9] and np.abs(found["balance"]).max() < 1e-12
+
+
 def test_a_row_of_a_press_has_the_height_in_the_middle_of_its_interval():
     """Down from 0.6 mm at 4 m/s, then up at 2 m/s: the force of a row is a mean over the interval before it."""
     p = planned("compaction")

@@ -38,9 +38,9 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
     With friction or rolling also rotation; with adhesion the work lost by jumps, and `elastic` includes the surface
     energy. With partial slip also friction, the work of friction, and springs, the elastic energy of the springs.
 
-    The balance is the sum of all energies less the work of walls, relative to the first frame with all spheres. The
-    balance vanishes unless contacts have rolling friction, dashpots or a friction spring: then the balance is their
-    work, and `friction` is the negative balance where friction work is not computed.
+    The balance is the sum of all energies less the work of walls, relative to the frame in which the last spheres come
+    in. The balance vanishes unless contacts have rolling friction, dashpots or a friction spring: then the balance is
+    their work, and `friction` is the negative balance where friction work is not computed.
     """
     spheres, contacts, rows = tables["particles"], tables["contacts"], tables["rows"]
     own = {"kinetic": kinetic(spheres)} | ({"rotation": rotation(spheres)} if p.model.spins else {})
@@ -57,7 +57,7 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
         terms["gravity"] += _lost_energy(spheres, gravity, steps)
     table = terms.assign(work=np.interp(steps, rows["step"], work_of_walls(p, rows)))
     total = terms.sum(axis=1) - table["work"]
-    start = spheres.groupby("step")["id"].count().idxmax()  # the first frame with all spheres
+    start = spheres.groupby("id")["step"].min().max()  # from here on no sphere comes in; some may have left before
     table["balance"] = total - total[start]
     if p.model.loses_energy and "friction" not in table:
         table["friction"] = -table["balance"]
