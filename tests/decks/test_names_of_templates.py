@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Each name that a template reads of a deck is there by its type, also in branches that no stored deck takes."""
 
+import contextlib
 import functools
 import types
 import typing
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import jinja2
@@ -59,10 +60,9 @@ class Reader:
 
     path: Path
     names: dict[str, object]
-    read: set[tuple[str, str]] = field(default_factory=set)  # (class, name) of what was found
 
     def inside(self, **names: object) -> "Reader":
-        return Reader(self.path, self.names | names, self.read)
+        return Reader(self.path, self.names | names)
 
     def attribute(self, owner: object, name: str) -> object:
         """The type of `owner.name`; None: unknown. Fails where no class of epdem in the union has it."""
@@ -71,11 +71,8 @@ class Reader:
         ours = [m for m in members(owner) if isinstance(m, type) and m.__module__.startswith("epdem.")]
         found = []
         for one in ours:
-            try:
+            with contextlib.suppress(AttributeError):
                 found.append(type_of(one, name))
-                self.read.add((one.__name__, name))
-            except AttributeError:
-                pass
         assert found or not ours, f"{self.path.name}: {' and '.join(m.__name__ for m in ours)} have no {name}"
         return found[0] if found else None
 
@@ -136,7 +133,7 @@ class Reader:
         if isinstance(called, tuple):
             path, macro = called
             given = dict(zip((arg.name for arg in macro.args), map(self.type, node.args), strict=False))
-            reader = Reader(path, macros_of(path) | dict.fromkeys(arg.name for arg in macro.args) | given, self.read)
+            reader = Reader(path, macros_of(path) | dict.fromkeys(arg.name for arg in macro.args) | given)
             if path == self.path:
                 reader.names = self.names | reader.names
             for part in macro.body:
@@ -158,12 +155,6 @@ def macros_of(path: Path) -> dict[str, object]:
     return reader.names
 
 
-def names_read(path: Path, deck: type) -> set[tuple[str, str]]:
-    reader = Reader(path, {"deck": deck})
-    reader.walk(parsed(path))
-    return reader.read
-
-
 @pytest.mark.parametrize("path", OF_DECKS, ids=lambda path: str(path.relative_to(TEMPLATES)))
 def test_a_name_that_a_template_reads_is_in_the_plan_or_the_deck(path):
-    names_read(path, deck_of(path))
+    Reader(path, {"deck": deck_of(path)}).walk(parsed(path))
