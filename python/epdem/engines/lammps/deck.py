@@ -116,6 +116,7 @@ class SceneDeck:
     frozen: tuple[int, ...]
     phases: tuple[PhaseCommands, ...]
     contact_walls: tuple[str, ...]
+    stress_walls: tuple[str, ...]
     row_words: tuple[str, ...]
     columns: tuple[str, ...]
     heat: str
@@ -156,7 +157,8 @@ def deck(p: ScenePlan) -> SceneDeck:
     return SceneDeck(
         plan=p,
         skin=p.case.numerics.skin or default_skin(p),
-        settings=" energies" * (p.output.energy or p.contacts > 0 or p.heat is not None) + " strain",
+        settings=" energies" * (p.output.energy or p.contacts > 0 or p.heat is not None or p.stress_walls != ())
+        + " strain",
         materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
         pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),
@@ -165,6 +167,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         frozen=tuple(n for n, s in enumerate(p.scene.table, 1) if s.frozen),
         phases=tuple(_phases(p)),
         contact_walls=tuple(decks.wall_id(w) for w in contact_walls(p)),
+        stress_walls=tuple(map(decks.wall_id, p.stress_walls)),
         row_words=(
             "f_ratio[1]",
             "f_ratio[2]",
@@ -212,5 +215,5 @@ def files(p: ScenePlan) -> dict[str, str]:
     data = deck(p)
     texts = {"in.scene": decks.render("lammps/scene.in.j2", deck=data), "spheres.data": _data(p, p.phases[0].name)}
     texts |= {phase.data: _data(p, phase.run.name) for phase in data.phases if phase.data}
-    files_of_walls = [w.name for w in p.scene.wall if isinstance(w, StlWall)]
+    files_of_walls = [w.name for w in p.scene.wall if isinstance(w, StlWall) or w.name in p.stress_walls]
     return texts | {f"{name}.stl": stl_text(name, p.triangles[name]) for name in files_of_walls}

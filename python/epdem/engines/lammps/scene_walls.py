@@ -55,9 +55,10 @@ def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
     found = []
     for name, mesh in p.scene.meshes.items():
         id, motion = wall_id(name), _motion_words(p, name)
-        refuse(f"scene.wall.{name}.stress", mesh.stress, "a wall has no values on its triangles")
-        refuse(f"scene.wall.{name}.wear", mesh.wear, "a wall has no values on its triangles")
-        if isinstance(mesh, StlWall):
+        turns = mesh.stress and "turn" in _changing(p, name)
+        refuse(f"scene.wall.{name}.stress", turns, "the wall turns, and the table has the normals at its start")
+        refuse(f"scene.wall.{name}.wear", mesh.wear, "wear is a sum over all steps")
+        if isinstance(mesh, StlWall) or mesh.stress:
             where = f"wall/ep mesh {name}.stl {motion}".rstrip()
             found.append(DeckWall(id, (), where, contact(p, name)))
             continue
