@@ -42,12 +42,17 @@ def test_a_rate_is_taken_up_to_the_layer_s_filling():
 
 
 def pressed(height: float, kind: str):
-    """The case of 1500 spheres of 50 um on 1 mm^2 (0.785 mm without void), or of 40 of 1.5 mm under a plate."""
+    """1500 spheres of 50 um on 1 mm^2 (0.785 mm without void), or 40 of 1.5 mm under a plate ("plates": on another)."""
     if kind == "compaction":
         data = read_toml(CASES / "compaction_powder.toml")
         return data | {"scene": data["scene"] | {"height": f"{height} mm"}}
     down = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
-    size = {"room": ["20 mm", "20 mm"], "tube": ["16.4 mm", "16.4 mm"], "small": ["18 mm", "18 mm"]}[kind]
+    size = {
+        "room": ["20 mm", "20 mm"],
+        "tube": ["16.4 mm", "16.4 mm"],
+        "plates": ["17 mm", "17 mm"],
+        "small": ["18 mm", "18 mm"],
+    }[kind]
     lid = {
         "name": "lid",
         "kind": "plate",
@@ -71,8 +76,9 @@ def pressed(height: float, kind: str):
         "move": [down],
         "until": {"wall": "lid", "travel": f"{39 - height} mm"},
     }
-    if kind == "tube":
-        return parts(wall=[FLOOR, lid, tube], fill=[BED | {"region": region}], phase=[phase])
+    floor = lid | {"name": "floor", "center": ["0 mm", "0 mm", "0 mm"]} if kind == "plates" else FLOOR
+    if kind in ("tube", "plates"):
+        return parts(wall=[floor, lid, tube], fill=[BED | {"region": region}], phase=[phase])
     return parts(wall=[FLOOR, lid], phase=[phase])
 
 
@@ -80,6 +86,7 @@ SOLID = {  # height without void [mm]: sum of volumes over the area
     "compaction": 1500 * 4 / 3 * np.pi * 0.05**3,
     "room": 40 * 4 / 3 * np.pi * 1.5**3 / 400,
     "tube": 40 * 4 / 3 * np.pi * 1.5**3 / (np.pi * 8**2),
+    "plates": 40 * 4 / 3 * np.pi * 1.5**3 / (np.pi * 8**2),
 }
 
 

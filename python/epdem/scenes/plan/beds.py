@@ -70,7 +70,8 @@ def refuse_heights(scene: Parts, beds: Sequence[PressedBed]) -> None:
         if bed is None or closing_speed(bed, phase) <= 0.0:
             raise CaseError(
                 f"{place}: wall {phase.until.wall} presses no bed in this phase: a bed is pressed by a plate that "
-                "covers the room or a tube and moves towards its spheres; name another wall, or give travel"
+                "covers the room or a tube and moves towards its spheres, with a plane or a plate at rest of its size "
+                "behind them; name another wall, or give travel"
             )
         if phase.until.density == 1.0 or (phase.until.height and phase.until.height <= bed.solid_height):
             raise CaseError(
@@ -106,6 +107,7 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
     for wall in plates:
         plate_at = {w.name: w.center["xyz".index(w.axis)] for w in plates if w.axis == wall.axis}
         axis = "xyz".index(wall.axis)
+        planes = [w.at for w in scene.planes if w.axis == wall.axis]
         begin = place = wall.center[axis]
         for n, phase in enumerate(scene.phase):
             move = phase.moves.get(wall.name)
@@ -128,7 +130,7 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
             stops = (
                 [plate_at[against]]
                 if against
-                else [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
+                else [x for x in (*planes, *_floors(scene, wall)) if sign * (x - begin) > 0]
             )
             ends = stops if against else [*stops, scene.room.limits[2 * axis + (sign > 0)]]
             stop = min(ends, key=lambda x: sign * x)
@@ -146,13 +148,26 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
                 yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area, against)
 
 
+def _floors(scene: Parts, wall: PlateWall) -> list[float]:
+    """Places [m] of the plates that never move and are opposite the whole of a plate."""
+    moved = {name for phase in scene.phase for name in phase.moves}
+    plates = [w for w in scene.wall if isinstance(w, PlateWall) and w.axis == wall.axis and w.name not in moved]
+    axis = "xyz".index(wall.axis)
+    return [w.center[axis] for w in plates if all(map(_within, _edges(wall), _edges(w)))]
+
+
+def _edges(wall: PlateWall) -> list[tuple[float, float]]:
+    """From and to [m] of a plate along the two axes across it."""
+    others = [k for k in range(3) if "xyz"[k] != wall.axis]
+    return [(wall.center[k] - size / 2, wall.center[k] + size / 2) for k, size in zip(others, wall.size, strict=True)]
+
+
 def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: list[Insertion]) -> float:
     """Area of the tube that holds the fills, or of the room between its planes, if the plate covers it [m^2]; else 0.
 
     span: heights between which the plate moves.
     """
-    others = [k for k in range(3) if "xyz"[k] != wall.axis]
-    edges = [(wall.center[k] - size / 2, wall.center[k] + size / 2) for k, size in zip(others, wall.size, strict=True)]
+    others, edges = [k for k in range(3) if "xyz"[k] != wall.axis], _edges(wall)
     for tube in scene.wall:
         if isinstance(tube, CylinderWall) and tube.axis == wall.axis and not scene.table:
             reach = [(c - tube.diameter / 2, c + tube.diameter / 2) for c in tube.center]
