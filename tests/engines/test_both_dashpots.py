@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Friction of contacts with both dashpots: tables, runs in pieces, the evaluation before the first step of a run."""
+"""Friction of contacts with both dashpots: tables of contacts, and runs in pieces."""
 
 import numpy as np
 import pytest

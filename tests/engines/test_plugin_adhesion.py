@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""ep/jkr and ep/thornton_ning in LIGGGHTS against theory: sticking, pull-off, meshes, contacts across a gap, energy."""
+"""ep/jkr and ep/thornton_ning in LIGGGHTS against theory: sticking, meshes, contacts across a gap, energy."""
 
 import re
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Impacts in LIGGGHTS against closed forms: restitution, friction, tangential spring, softer body."""
+"""Strengths in LIGGGHTS per type, per pair, as a ratio or left out, and the dashpot of no_history."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Material properties and settings of the models: what is accepted, and the refusal of a wrong deck."""
+"""Material properties and settings of the models: what is accepted, and which impacts a change counts for."""
 
 import re
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The laws as C++ classes in YADE: saving, errors, threads, friction, dashpots, energies."""
+"""The laws as C++ classes in YADE: saving, errors, threads, periodic cells, clumps, attributes."""
 
 import math
 
