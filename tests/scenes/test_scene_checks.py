@@ -241,6 +241,15 @@ def test_only_shot_that_met_the_plate_alone_counts():
     assert not verdict(p, "rebound_speed", particles=frames(p, [{"vz": 29.9 * up}]))["passed"]
 
 
+def test_shot_of_a_coarse_time_step_is_held_against_the_error_that_the_case_allows():
+    data = data_of("peening") | {"law": {"name": "hertz"}, "output": {"rows": 40, "particles": 20}}
+    data["numerics"] = {"error": 1e-2}
+    p = plan(parse(data))
+    up = np.where(np.arange(p.steps // p.frames + 1) > 5, 1.0, -1.0)
+    for speed, passed in ((29.8, True), (29.5, False)):
+        assert verdict(p, "rebound_speed", particles=frames(p, [{"vz": speed * up}]))["passed"] == passed
+
+
 @pytest.mark.parametrize(("factor", "passed"), [(1.0, True), (1.009, True), (1.02, False)])
 def test_the_torque_on_a_drum_is_the_weight_of_its_bed_times_the_arm(factor, passed):
     """A bed of two spheres is carried up and falls back in the first half; then one circles about the axis ever faster:

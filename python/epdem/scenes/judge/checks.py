@@ -299,7 +299,8 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             case ReboundSpeed() if many and len(p.phases) == 1:
                 expected = single_rebound(p.case, check)
                 speed, count = rebounds(tables["particles"], check.speed, expected)
-                rows.append(_row("rebound_speed", speed, expected, 1e-3, count=count))
+                allowed = max(1e-3, p.case.numerics.error)  # of the time step
+                rows.append(_row("rebound_speed", speed, expected, allowed, count=count))
             case TorqueOfBed() if many and p.scene.gravity and not p.model.rolling:  # whose torque is no force
                 rows.append(_row("torque_of_the_bed", *bed_torque(p, check, tables), 0.01))
             case Unloading():
