@@ -107,6 +107,8 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     assert by_phase["asked"].dropna().to_dict() == pytest.approx({"stage1": PRESSURES[0], "stage2": PRESSURES[1]})
     assert by_phase["reached"].dropna().to_dict() == {name: reached[name] for name in ("stage1", "stage2")}
     assert (by_phase["peak"] >= by_phase["pressure"]).all()
+    assert by_phase["error"]["stage1"] == pytest.approx(by_phase["peak"]["stage1"] / PRESSURES[0] - 1)  # a wave
+    assert 0.005 < by_phase["error"]["stage1"] < 0.05
     height = np.array([plate(pressed, "punch", step) for step in found["step"]])
     assert found["height"].to_numpy() == pytest.approx(height, rel=1e-6)
     volume = COUNT * 4 / 3 * math.pi * RADIUS**3
@@ -218,7 +220,9 @@ def test_page_terminal_figures_and_csv_have_the_same_numbers(pressed):
         heads = re.findall(r"<button[^>]*>([^<]*)<", table)
         rows = [re.findall(r"<td[^>]*>([^<]*)<", row) for row in table.split("<tr>")[2:]]
         seen |= in_si(heads, rows)
-    assert {*seen} == {*ends} - {"step", "time", "porosity"} | {"passed"} and seen["passed"].count("yes") == 2
+    assert {*seen} == {*ends} - {"step", "time", "porosity"} | {"passed"}
+    within = ends["error"].abs().dropna() <= 0.02
+    assert [x for x in seen["passed"] if isinstance(x, str)] == ["yes" if x else "no" for x in within]
     (shown,) = [x for x in summary.shown(pressed) if isinstance(x, Table) and str(x.title) == "stages"]
     printed = in_si(
         [str(c.header) for c in shown.columns], zip(*(map(str, c.cells) for c in shown.columns), strict=True)
@@ -610,5 +614,5 @@ def test_a_stage_has_its_pressure_and_a_density_that_does_not_follow_the_rows(en
         data["output"] |= {"rows": rows, "energy": False, "color": "speed"}
         outcome = run(write_case(data, tmp_path / f"{rows}"), engine, out=tmp_path / f"{rows}/out")
         found.append(outcome.results.stages.set_index("phase").loc["stage1"])
-    assert abs(found[0]["error"]) < 5e-3 and found[0]["reached"] == found[1]["reached"]
+    assert found[0]["reached"] == pytest.approx(10e6, rel=5e-3) and found[0]["reached"] == found[1]["reached"]
     assert found[0]["relative_density"] == pytest.approx(found[1]["relative_density"], rel=1e-6)

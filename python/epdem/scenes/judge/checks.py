@@ -13,6 +13,7 @@ from ...case.scene import SceneCase
 from ...impacts.prediction import predict
 from ...laws.strengths import ADHESION
 from ..plan.model import pair_law
+from ..plan.phases import REACHED
 from ..plan.plan import ScenePlan
 from ..plan.timestep import impact
 from ..tables.columns import last_frame
@@ -31,6 +32,7 @@ CHECKS = {  # the unit of value and expected; what passes
     "force_on_all_walls": Column("N", "the force on all walls is the weight of the spheres"),
     "void": Column("", "number of pressed beds that lost all void, which ended the run"),
     "stage_pressure": Column("Pa", "each stage reaches its pressure and keeps it (here the one farthest from it)"),
+    "reached_force": Column("N", "each force that ends a phase is the one asked for (here the farthest from it)"),
     "density": Column("", "largest relative density, which stays below 1"),
     "energy_residual": Column("", "the energy balance closes: no term is a remainder"),
     "energy_gained": Column("", "friction, the rest of the energy balance, is not negative"),
@@ -262,7 +264,26 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     return [_row("force_on_all_walls", sum(forces), float(weight.sum()), 0.02 * of_largest)]
 
 
-STAGE = 0.02  # error of the pressure of a stage
+STAGE = 0.02  # error of the pressure of a stage, or of a force that ends a phase
+
+
+def reached_forces(p: ScenePlan) -> dict[str, tuple[float, float]]:
+    """Phase -> (force found, force asked for) [N] on a wall whose force has ended a phase, but of a stage of a press.
+
+    Not of walls that a force or a vibration drives, which the mean of a row ends.
+    """
+    of_stages = p.scene.stages and p.scene.stages.wall
+    return {
+        phase.name: (phase.value, c.force)
+        for phase in p.phases
+        if phase.reached == REACHED and phase.stops and (c := phase.case.condition) and c.force and c.wall != of_stages
+    }
+
+
+def _of_forces(p: ScenePlan) -> list[Row]:
+    """Each force that ends a phase is the one asked for."""
+    found = max(reached_forces(p).values(), key=lambda force: abs(force[0] / force[1] - 1.0), default=None)
+    return [] if found is None else [_row("reached_force", *found, STAGE)]
 
 
 def _of_stages(stages: pd.DataFrame) -> list[Row]:
@@ -308,6 +329,7 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 rows.append(_below("loading_stiffness", *stiffness(p, check, tables["rows"])))
                 rows.append(_below("recovered_work", back, put_in))
     rows += _of_parts(p, tables)
+    rows += _of_forces(p)
     rows += _of_stages(tables["stages"]) if "stages" in tables else []
     if "energy_balance" in tables and not p.model.loses_energy:
         rows.append(_row("energy_residual", closure(tables["energy_balance"]), 0.0, 0.01))

@@ -25,7 +25,7 @@ from ..plan.quantities import STRAINS
 from ..plan.timestep import unstable_steps
 from ..tables.columns import bodies, last_frame, reduced
 from ..tables.stages import SLOW, against, inertial_numbers, loaded, towards, volume
-from .checks import AT_REST, flow_warnings
+from .checks import AT_REST, flow_warnings, reached_forces
 
 SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one
@@ -33,7 +33,7 @@ ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = tru
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
 PRESSED = "pressures and springback deviate from finite elements (docs/press.md)"
 MISSED = 0.01  # of the duration of a phase
-NEAR = 5e-3  # error of the pressure of a stage from which on a sentence names it
+NEAR = 5e-3  # error of the pressure of a stage, or of a force that ends a phase, from which on a sentence names it
 FAST = 3.0  # rms speed of a bed over the speed of its punch; spheres that the punch hits fly at twice its speed at most
 TAIL, OFF = 0.2, 0.05  # of a phase, over which the force of a wall is averaged; of the force
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
@@ -106,6 +106,12 @@ def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str
         for phase in phases[phases["until"] == NO_VOID].head(1).to_dict("records")
     ]
     pressing = [*_gains_energy(p, tables), *press_warnings(p, tables)] if "stages" in tables else []
+    pressing += [
+        f"scene.phase.{name}.until: {found:.4g} N, {found / asked - 1.0:+.2%} beside the {asked:.4g} N asked for; move "
+        "slower near it"
+        for name, (found, asked) in reached_forces(p).items()
+        if abs(found / asked - 1.0) > NEAR
+    ]
     softens = "finite_strain" in p.model.ratios()
     effect = PRESSED if p.model.compaction else validity.SOFTENED if softens else validity.OVERESTIMATED
     others = [*_force_not_reached(p, tables["rows"]), *flow_warnings(p, tables), *_still_moves(p, tables)]

@@ -16,7 +16,6 @@ from .columns import FORCE, NORMAL, place, work_of_walls
 SLOW = 1e-3  # inertial number below which a bed deforms as if at rest [GDR MiDi 2004, Eur. Phys. J. E 14, 341]
 FITTED = 0.95  # relative density up to which a stage counts for a fit
 Tables = dict[str, pd.DataFrame]
-PASSED = 0.05  # of the pressure of a stage: a peak beyond it is no wave of a fast punch
 
 
 def towards(p: ScenePlan, stages: Stages, phase: Phase) -> float:
@@ -63,7 +62,7 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """One row per phase from the first in which the punch moves towards the wall against it, SI.
 
     asked, reached: pressure of a stage, and that at the step at which it was found to be there, within MISS; error: of
-    both, or of a peak that passes the stage by more than PASSED. pressure, opposite_pressure: at that step
+    both, or of a peak that passes the stage by more. pressure, opposite_pressure: at that step
     in phases with `until`, else means of the last row of the phase; peak: the largest in the phase. springback: axial
     strain since the end of the last phase of loading, in phases in which the punch moves away. radial_pressure: of the
     frame at the end of the phase, NaN after a release, where the law leaves too much of it. work, plastic, elastic: as
@@ -92,7 +91,7 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     found["peak"] = [max(end, rows[stages.pressure].loc[low + 1 : high].max()) for low, high, end in spans]
     # a bed that was pressed beyond its stage does not get its density back where the punch goes back
     error, beyond = (found[name] / found["asked"] - 1.0 for name in ("reached", "peak"))
-    found["error"] = error.where(beyond <= PASSED, beyond)
+    found["error"] = error.where(error.abs() >= beyond, beyond)
     found["height"] = heights(p, stages, found["time"].to_numpy())
     found["relative_density"] = volume(p, tables) / (stages.area * found["height"])
     found["porosity"] = 1.0 - found["relative_density"]
