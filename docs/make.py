@@ -33,7 +33,6 @@ FIGURES = {  # the command, and where the figure is then
     "thornton_ning_1998.png": ("epdem verify figures -o runs/figures", "runs/figures/thornton_ning_1998.png"),
     "laws.png": (".venv/bin/python docs/laws.py", "docs/figures/laws.png"),
     "cost.png": (".venv/bin/python docs/cost.py", "docs/figures/cost.png"),
-    "stability.png": (".venv/bin/python docs/stability.py", "docs/figures/stability.png"),
     "stability_map.png": (".venv/bin/python docs/stability.py", "docs/figures/stability_map.png"),
     "validate.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/validate.png"),
     "impact_25k.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/impact_25k.png"),
