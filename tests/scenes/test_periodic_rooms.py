@@ -13,7 +13,7 @@ from scene_runs import run, write_case
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
-from epdem.errors import CaseError
+from epdem.errors import CaseError, EngineError
 from epdem.jobs.engine import Unsupported, check
 from epdem.scenes.judge import measures
 from epdem.scenes.plan import placement
@@ -181,3 +181,14 @@ def test_a_narrow_periodic_room_is_refused_where_a_host_mixes_images_and_runs_in
     assert frames[0][names].to_numpy() == pytest.approx(frames[1][names].to_numpy(), rel=1e-9, abs=1e-12)
     turned = frames[0]["omega_z"].to_numpy().reshape(-1, 2)
     assert abs(turned[-1] - turned[0]).min() > 10, "friction acts"
+
+
+@pytest.mark.liggghts
+def test_a_wall_too_long_for_a_narrow_periodic_room_says_what_to_change(tmp_path):
+    """LIGGGHTS's search for the corners of meshes fails at 11 periods; its own words are those of an assertion."""
+    room = {"x": ["-60 mm", "60 mm"], "y": ["-5 mm", "5 mm"], "z": ["-20 mm", "90 mm"]}
+    belt = {"name": "belt", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "-10 mm"], "material": "steel"}
+    bed = BED | {"region": {"x": ["-9 mm", "9 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "30 mm"]}, "count": 5}
+    scene = parts(room=room, periodic="y", wall=[belt | {"size": ["110 mm", "10 mm"]}], fill=[bed])
+    with pytest.raises(EngineError, match="a triangle of a wall is many times longer than a period of the room"):
+        run(write_case(scene, tmp_path), out=tmp_path / "out")
