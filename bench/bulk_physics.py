@@ -32,12 +32,11 @@ BEGIN, END = 0.05, 0.25  # parts of the filling that are out when the measuremen
 
 @dataclass(frozen=True)
 class Flow:
-    """One discharge: outlet over d, mass flow [kg/s], bulk density [kg/m^3], spheres that were counted."""
+    """One discharge: outlet over d, mass flow [kg/s], bulk density [kg/m^3]."""
 
     outlet: float
     rate: float
     bulk: float
-    counted: int
 
     def constant(self, k: float) -> float:
         """C of Beverloo's law with the power 5/2."""
@@ -72,7 +71,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     if out < END:
         raise RuntimeError(f"outlet {outlet} d: only {out:.0%} of the filling came out; the flow has stopped")
     found = discharge(p, p.scene.check[0], spheres, (BEGIN, END))
-    return Flow(outlet, found.rate, found.bulk, found.counted)
+    return Flow(outlet, found.rate, found.bulk)
 
 
 def power(flows: list[Flow], k: float) -> float:
@@ -90,12 +89,12 @@ def main() -> None:
     parser.add_argument("--angle", type=float, default=90.0, help="half angle of the cone; 90: flat bottom")
     options = parser.parse_args()
     flows = []
-    print("| D/d | W [g/s] | rho_b [kg/m^3] | spheres counted | C for k = 1.4 |\n|---|---|---|---|---|")
+    print("| D/d | W [g/s] | rho_b [kg/m^3] | C for k = 1.4 |\n|---|---|---|---|")
     for outlet in options.outlets:
         with tempfile.TemporaryDirectory(prefix="epdem_bulk_") as folder:
             flows.append(f := flow(outlet, options.count, options.bin, Path(folder), options.angle))
         constant = f.constant(1.4)
-        print(f"| {outlet:g} | {1e3 * f.rate:.2f} | {f.bulk:.0f} | {f.counted} | {constant:.2f} |", flush=True)
+        print(f"| {outlet:g} | {1e3 * f.rate:.2f} | {f.bulk:.0f} | {constant:.2f} |", flush=True)
     for k in (1.2, 1.4, 1.6):
         print(f"k = {k}: n = {power(flows, k):.2f}, mean C = {np.mean([f.constant(k) for f in flows]):.2f}")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import OptimizeResult, brentq
 
 from epdem.theory.partial_slip import rebound
 from epdem.theory.thornton import Thornton
@@ -89,7 +89,7 @@ class Impact:
 
     @cached_property
     def _branches(self) -> tuple:
-        def path(force: Callable[[float], float], start: tuple[float, float], end: Callable) -> object:
+        def path(force: Callable[[float], float], start: tuple[float, float], end: Callable) -> OptimizeResult:
             end.terminal = True  # type: ignore[attr-defined]
             found = solve_ivp(
                 lambda t, y: (y[1], -force(y[0]) / (MASS / 2)),
@@ -160,7 +160,7 @@ class Grazing:
 
     @cached_property
     def _branches(self) -> tuple:
-        def path(start: np.ndarray, peak: float | None, end: Callable) -> object:
+        def path(start: np.ndarray, peak: float | None, end: Callable) -> OptimizeResult:
             def rates(t: float, state: np.ndarray) -> np.ndarray:
                 force, torque = self.loads(state, peak)
                 return np.array([*state[2:4], *(2 * force / MASS), torque / (0.4 * MASS * RADIUS**2)])

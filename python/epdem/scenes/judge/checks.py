@@ -122,8 +122,8 @@ class Discharge:
     unknown: str = ""
 
 
-def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame) -> Discharge:
-    """The slope of the mass below the outlet against time, while it is between 0.2 and 0.6 of the bed.
+def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame, part: tuple[float, float] = (0.2, 0.6)) -> Discharge:
+    """The slope of the mass below the outlet against time, while it is between the two parts of the bed.
 
     NaN where fewer than two frames lie between them. The bulk density is that from 0.2 to 0.7 of the height of the bed
     above the outlet.
@@ -134,7 +134,7 @@ def discharge(p: ScenePlan, flow: MassFlow, spheres: pd.DataFrame) -> Discharge:
         return Discharge(np.nan, np.nan, np.nan, 0.0, f"{len(bed)} spheres above the outlet as it opens are no bed")
     out = spheres[spheres["z"] < flow.at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0).to_numpy()
     passed = out / bed["mass"].sum()
-    during = (passed > 0.2) & (passed < 0.6)
+    during = (passed > part[0]) & (passed < part[1])
     height = float(np.quantile(bed["z"], 0.95) - flow.at)
     low, high = flow.at + np.array([0.2, 0.7]) * height
     inside = bed[(bed["z"] > low) & (bed["z"] < high)]
