@@ -46,6 +46,13 @@ def test_the_values_of_a_case_are_read_by_their_keys_in_si(ball):
     for key in ("impact.body.radious", "impact.speeds.9"):
         with pytest.raises(CaseError, match=r"the nearest: impact|is not given"):
             ball[key]
+    ratio = ball.replace(law={"name": "thornton", "yield_pressure_ratio": 2.8})
+    with pytest.raises(
+        CaseError, match=r"'law.yield_pressure' is not given and has no default; the law has law.yield_p"
+    ):
+        ratio["law.yield_pressure"]
+    assert ratio["law.yield_pressure_ratio"] == 2.8
+    assert ball.replace(law={"name": "johnson"})["law.yield_pressure_ratio"] == 3.0  # a default
 
 
 def test_a_case_of_plain_values_is_the_case_of_the_file(ball):

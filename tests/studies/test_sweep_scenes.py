@@ -103,7 +103,7 @@ def test_the_page_shows_the_measures_of_the_case_first_and_every_number_that_cha
     for key, chart in zip(("scene.count", "materials.glass.density"), drawn, strict=True):
         assert {panel.y.label for panel in chart.panels[:2]} == {"held", "top"} and chart.panels[0].y.unit == "kg"
         named = {
-            panel.y.label + ("" if series.name == "check" else f"_{series.name}"): series
+            panel.y.label + ("" if series.name == "value" else f"_{series.name}"): series
             for panel in chart.panels
             for series in panel.series
         }
@@ -126,7 +126,9 @@ def test_a_sweep_of_a_press_draws_densities_springback_and_side_pressure_before_
     table = pd.DataFrame({"point": [1, 2], "k": [0.0, 0.3]} | {name: [1.0, 2.0] for name in names})
     (chart,) = _by_key(table, ["k"], [], {})
     assert [panel.y.label for panel in chart.panels] == [*names[1:4], names[0], "density"]
-    assert [series.name for panel in chart.panels for series in panel.series] == ["value"] * 4 + ["check"]
+    assert {series.name for panel in chart.panels for series in panel.series} == {"value"}
+    (chart,) = _by_key(table.assign(held=table["k"]), ["k"], ["held"], {})  # beside the measures of a case, too
+    assert [panel.y.label for panel in chart.panels] == ["held", *names[1:4], "density"]
 
 
 def test_the_warnings_of_the_points_stand_in_terminal_table_and_page(bed, tmp_path):

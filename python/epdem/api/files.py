@@ -14,13 +14,23 @@ from pydantic import BaseModel
 from ..base.files import write_text
 from ..case import impact as impact_case
 from ..case import scene as scene_case
-from ..case.keys import Key, entry, keys_of
+from ..case.keys import Key, entry, keys_of, law_of
+from ..case.law import LawChoice, alternatives
 from ..case.toml import LoadedCase, portable_text
 from ..case.units import to_si
 from ..errors import CaseError
+from ..laws.strengths import find_law
 from ..studies.sweep import points
 from ..studies.sweep.points import with_units
 from .arguments import Table, take
+
+
+def _law_defaults(table: BaseModel) -> dict[str, float]:
+    """The numbers of a law by its keys, of a strength the ratio to the yield stress; {}: not a law."""
+    if not isinstance(table, LawChoice):
+        return {}
+    law, numbers = find_law(table.name), table.numbers
+    return numbers.ratios | ({f"{law.strength}_ratio": numbers.ratio} if law.strength and not numbers.absolute else {})
 
 
 class _File:
@@ -95,12 +105,15 @@ class _File:
                     named = {
                         field.alias or name: getattr(value, name) for name, field in type(value).model_fields.items()
                     }
-                    value = named | (value.model_extra or {})
+                    value = named | _law_defaults(value) | (value.model_extra or {})
                 value = value[entry(value, part) if isinstance(value, list) else part]
         except (LookupError, TypeError, ValueError):
-            known = keys_of(tomllib.loads(self.text))
-            points.require_key(key, known, "case")
-            raise CaseError(f"case: {key!r} is not given and has no default") from None
+            data = tomllib.loads(self.text)
+            points.require_key(key, keys_of(data), "case")
+            law, name = law_of(data), key.removeprefix("law.")
+            others = [f"law.{other}" for other in (alternatives(law, name) if law else ()) if other != name]
+            instead = f"; the law has {others[0]}" if others else ""
+            raise CaseError(f"case: {key!r} is not given and has no default{instead}") from None
         unit = keys_of(tomllib.loads(self.text)).get(key, Key()).unit
         return to_si(value, unit) if unit and isinstance(value, str) else value
 

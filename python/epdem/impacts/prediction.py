@@ -109,7 +109,7 @@ def predict(experiment: Experiment) -> Prediction:
             *law.caveats(**pair),
             *_too_fast(x, impact.radius_max),
             *_turning(x, impact.contact_time, impact.overlap_max),
-            *_surface_yield(x),
+            *surface_yields(x, x.oblique.friction if x.oblique else 0.0).values(),
         ),
         finite_strain=tuple(validity.finite_strain_of_impacts(flattening, x.speed, effect)),
         observation_time=law.observation_time(**pair),
@@ -171,22 +171,22 @@ def _radiating(speed: np.ndarray, share: np.ndarray | None) -> list[str]:
     ]
 
 
-def _surface_yield(x: Experiment) -> list[str]:
-    """A sentence for each material on first yield at the surface under a large friction (section 8.2.5)."""
-    mu = x.oblique.friction if x.oblique else 0.0
+def surface_yields(x: Experiment, mu: float) -> dict[float, str]:
+    """A sentence for each material on first yield at the surface under a large friction (section 8.2.5), by the peak
+    pressure [Pa]."""
     pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
     found = {}
     for b in (x.body, x.target):
         if mu <= SURFACE_FRICTION or b.yield_stress is None or b.rigid or np.isinf(b.yield_stress):
             continue
         ratio = float(first_sliding_yield(mu, b.poisson_ratio)[0])
-        speed = float(yield_speed(p_y=ratio * b.yield_stress, **pair))
-        found[b.material] = (
+        pressure = ratio * b.yield_stress
+        found[pressure] = (
             f"friction {mu:g}: a sliding contact of {b.material} yields at its surface from a peak pressure of "
-            f"{in_words(ratio * b.yield_stress, 'Pa')} ({ratio:.2f} Y) on, which normal impacts reach at "
-            f"{speed:.3g} m/s"
+            f"{in_words(pressure, 'Pa')} ({ratio:.2f} Y) on, which normal impacts reach at "
+            f"{float(yield_speed(p_y=pressure, **pair)):.3g} m/s"
         )
-    return [*found.values()]
+    return found
 
 
 def _softer(x: Experiment) -> tuple[str, ...]:

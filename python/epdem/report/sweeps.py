@@ -102,11 +102,12 @@ def _said(name: str, value: object, units: dict[str, str]) -> str:
 
 
 def _by_key(table: pd.DataFrame, keys: Sequence[str], measured: Sequence[str], units: dict[str, str]) -> list[Chart]:
-    """For each key with several values, the numbers of the scenes that change: the measures of the case and the checks,
-    of a case without measures all columns."""
+    """For each key with several values, the numbers of the scenes that change: the measures of the case, the stages of
+    a press and the checks, of a case without measures all columns."""
     numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1] or ["point"]
     changing = _changing(table.drop(columns=["point", *keys]))
-    wanted = [column for column in changing if not measured or column in measured or column in CHECKS]
+    chosen = {*measured, *CHECKS}
+    wanted = [column for column in changing if not measured or column in chosen or column.endswith(STAGES)]
     # stable: else as in the table
     columns = sorted(wanted or changing, key=lambda column: (column not in measured, not column.endswith(STAGES)))
     shown = columns[:MOST_PANELS]
@@ -145,6 +146,5 @@ def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str], lines:
     for kind in kinds:
         k = KINDS.index(kind) if kind else len(KINDS)
         y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
-        label = kind or ("check" if column in CHECKS else "value")
-        series.append(Series(label, x, y, k, DASHES[k % len(DASHES)] if lines else None, k))
+        series.append(Series(kind or "value", x, y, k, DASHES[k % len(DASHES)] if lines else None, k))
     return series

@@ -2,8 +2,10 @@
 """Warnings of a scene before and after its run: probable mistakes and lost spheres, in sentences."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from ...base.readable import in_words
@@ -12,17 +14,18 @@ from ...case.outputs import AtRest
 from ...case.parts import Region
 from ...case.walls import Room
 from ...errors import CaseError
+from ...impacts.prediction import SURFACE_FRICTION, surface_yields
 from ...jobs.stage import Tables
 from ...theory import validity
 from ...theory.timestep import LOOSE
 from ..plan import filling
 from ..plan.beds import DENSE, dense_beds, largest_density
 from ..plan.limits import depths, overlaps
-from ..plan.meshes import sheet
+from ..plan.meshes import at_end, sheet
 from ..plan.phases import NO_VOID, NOT_REACHED
 from ..plan.plan import ScenePlan
 from ..plan.quantities import STRAINS
-from ..plan.timestep import unstable_steps
+from ..plan.timestep import impact, unstable_steps
 from ..tables.columns import bodies, last_frame, reduced
 from ..tables.stages import SLOW, against, inertial_numbers, loaded, towards, volume
 from .checks import AT_REST, flow_warnings, reached_forces
@@ -37,11 +40,19 @@ NEAR = 5e-3  # error of the pressure of a stage, or of a force that ends a phase
 FAST = 3.0  # rms speed of a bed over the speed of its punch; spheres that the punch hits fly at twice its speed at most
 TAIL, OFF = 0.2, 0.05  # of a phase, over which the force of a wall is averaged; of the force
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
+FLAT = 1e-3  # of the smallest radius: corners of a horizontal triangle differ by less in height
 
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    found = _law(p) + _cold_losses(p) + _hard_walls(p) + filling.warnings(p.case) + dense_beds(p.beds)
+    found = (
+        _law(p)
+        + _yields_at_surface(p)
+        + _cold_losses(p)
+        + _hard_walls(p)
+        + filling.warnings(p.case)
+        + dense_beds(p.beds)
+    )
     return (
         found
         + _slower(p)
@@ -60,6 +71,18 @@ def _law(p: ScenePlan) -> list[str]:
         f"law.name = {p.model.law!r}: the pressures of a bed that is pressed with this law are not those of finite "
         "elements (docs/press.md); take law.name = 'cavity' with finite_strain = true and compaction = true"
     ]
+
+
+def _yields_at_surface(p: ScenePlan) -> list[str]:
+    """The sentence on first yield under a large friction of the pair whose surface yields at the lowest pressure; its
+    speed does not depend on the radius."""
+    found: dict[float, str] = {}
+    for material, radius in {part.material: part.radii()[0] for part in p.scene.filled}.items():
+        for other, mu in zip(p.model.types, p.model.friction[p.model.type_of(material) - 1], strict=True):
+            if mu > SURFACE_FRICTION:
+                x = impact(p.case, material, radius, other.material, 1.0, wall=other.wall)
+                found |= surface_yields(x, mu)
+    return [found[min(found)]] if found else []
 
 
 def _cold_losses(p: ScenePlan) -> list[str]:
@@ -254,15 +277,16 @@ def lost_spheres(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
 
 
 def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
-    """A sentence for each plane of all phases through which spheres have passed: how many, and the largest overlap.
+    """A sentence for each plane of all phases, and for each wall with horizontal triangles whose way is known, through
+    which spheres have passed: how many, and the largest overlap.
 
     A sphere that is missing in the last frame has passed if its motion until the next frame carries it out of the room
-    through the plane alone, or if its surface was within a radius of the plane and its motion leaves it in the room: a
+    through the wall alone, or if its surface was within a radius of the wall and its motion leaves it in the room: a
     load between two frames has pressed it through.
     """
     if not p.frames:
         return []
-    spheres, found = tables["particles"], []
+    spheres, found, many = tables["particles"], [], dict[str, int]()
     first, last = (spheres.drop_duplicates("id", keep=keep).set_index("id") for keep in ("first", "last"))
     seconds = (last["step"] < p.frame_steps(p.frames)[-1]) * p.frames * p.time_step
     ends = last[[*"xyz"]].to_numpy() + seconds.to_numpy()[:, None] * last[["vx", "vy", "vz"]].to_numpy()
@@ -273,12 +297,15 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
         k = "xyz".index(wall.axis)
         beyond = (first.loc[last.index, wall.axis].to_numpy() - wall.at) * (ends[:, k] - wall.at) < 0
         pressed = gone & ((last[wall.axis] - wall.at).abs() < 2 * last["radius"]).to_numpy() & ~outside.any(axis=1)
-        passed = int(((beyond & ~np.delete(outside, k, axis=1).any(axis=1)) | pressed).sum())
+        many[wall.name] = int(((beyond & ~np.delete(outside, k, axis=1).any(axis=1)) | pressed).sum())
+    there = gone & ~outside[:, :2].any(axis=1)
+    many |= _passed_triangles(p, spheres, last[there].assign(ends=list(ends[there]), inside=~outside[there, 2]))
+    for name, passed in many.items():
         if not passed:
             continue
-        said = f"{passed} of {len(last)} spheres have passed through wall {wall.name}"
+        said = f"{passed} of {len(last)} spheres have passed through wall {name}"
         contacts = tables.get("contacts", pd.DataFrame(columns=["wall"]))
-        if len(contacts := contacts[contacts["wall"] == wall.name]):
+        if len(contacts := contacts[contacts["wall"] == name]):
             share = contacts["delta_max"].to_numpy() / bodies(p, contacts, spheres)[0]["radius"].to_numpy()
             said += f", whose contacts overlap by up to {share.max():.2g} radii"
         found.append(
@@ -286,6 +313,56 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
             "or give a higher modulus"
         )
     return found
+
+
+def _levels(p: ScenePlan, steps: list[int]) -> Iterator[tuple[str, FloatArray, list[float]]]:
+    """(wall, its horizontal triangles of one height, their height at each step) of walls that rest or move up and down
+    in a known way; not the punch of a press, which has a sentence."""
+    moves = [entry for phase in p.phases for entry in phase.moves.items()]
+    aside = {name for name, move in moves if move.press or move.rotation or move.along[0] or move.along[1]}
+    aside |= {p.scene.stages.wall} if p.scene.stages else set()
+    motions, flat = [p.motions_until(step) for step in steps], FLAT * p.smallest
+    for name in p.triangles.keys() - aside:
+        corners = p.triangles[name]
+        horizontal = corners[np.ptp(corners[..., 2], axis=1) < flat]
+        levels = np.round(horizontal[:, 0, 2] / flat)
+        for level in np.unique(levels):
+            one = horizontal[levels == level]
+            yield name, one, [float(at_end(moves, {name: one[:1]})[name][0, 0, 2]) for moves in motions]
+
+
+def _passed_triangles(p: ScenePlan, spheres: pd.DataFrame, gone: pd.DataFrame) -> dict[str, int]:
+    """How many spheres are on another side of horizontal triangles than a frame before, by wall.
+
+    gone: the last row of each sphere that the next frame lacks, with its place by then, `ends` [m], and whether it is
+    in the room there, `inside`.
+    """
+    steps = p.frame_steps(p.frames)
+    frames = [spheres[spheres["step"] == step].set_index("id") for step in steps]
+    passed: dict[str, set[int]] = {}
+    for name, triangles, heights in _levels(p, steps):
+        for n, (now, later) in enumerate(zip(frames[:-1], frames[1:], strict=True)):
+            missing = gone[gone["step"] == steps[n]]
+            stay = now.index.intersection(later.index)
+            begin = pd.concat([now.loc[stay], missing])
+            end = np.concatenate([later.loc[stay, [*"xyz"]], np.reshape([*missing["ends"]], (-1, 3))])
+            above = begin["z"].to_numpy() - heights[n]
+            through = above * (end[:, 2] - heights[n + 1]) < 0
+            near = np.abs(above[len(stay) :]) < 2 * missing["radius"].to_numpy()
+            through[len(stay) :] |= near & missing["inside"].to_numpy(bool)
+            begin, end = begin[through], end[through]
+            both = _within(triangles, begin[[*"xyz"]].to_numpy()) & _within(triangles, end)
+            passed.setdefault(name, set()).update(begin.index[both])
+    return {name: len(ids) for name, ids in passed.items()}
+
+
+def _within(triangles: FloatArray, places: FloatArray) -> npt.NDArray[np.bool_]:
+    """Which places, shape (n, 3), are above or below one of the triangles, shape (m, 3 corners, 3)."""
+    sides = np.roll(triangles, -1, axis=1)[None, ..., :2] - triangles[None, ..., :2]
+    arms = places[:, None, None, :2] - triangles[None, ..., :2]
+    turns = sides[..., 0] * arms[..., 1] - sides[..., 1] * arms[..., 0]
+    inside = np.asarray((turns >= 0).all(axis=2) | (turns <= 0).all(axis=2))
+    return np.asarray(inside.any(axis=1))
 
 
 def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
