@@ -186,10 +186,11 @@ ROWS = [
     *(row for name in LAWS for row in law_rows(name)),
 ]
 
-# a fit with its own unit, words, and those that the rows above call under another name
+# a fit with its own unit, words, an integration in steps, and those that the rows above call under another name
 OTHERWISE = {
     "printed.bridges_restitution",
     "oblique.impact",
+    "oblique.one_spring",
     "waves.energy_split",
     "waves.history",
     "restitution.impact",
