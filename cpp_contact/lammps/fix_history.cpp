@@ -25,7 +25,7 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-constexpr int most_beside = 2 + FixHistory::columns + 3;  // of an atom that is sent, beside its contacts
+constexpr int most_beside = FixHistory::columns + dent_sums + 2;  // of an atom that is sent, beside its contacts
 /// First number of a restart file; files of before have another number, and lack walls or pressures.
 constexpr double restart_form = -4.0;
 
@@ -172,6 +172,13 @@ size_t FixHistory::longest() const {
   return most;
 }
 
+int FixHistory::longest_of_ranks() const {
+  const int here = static_cast<int>(longest());
+  int most;
+  MPI_Allreduce(&here, &most, 1, MPI_INT, MPI_MAX, world);
+  return most;
+}
+
 /// From the list to the atoms: the contacts of the last evaluation.
 void FixHistory::collect() {
   if (!page_holds_ || layout_.values == 0) return;
@@ -187,6 +194,14 @@ void FixHistory::collect() {
   }
   std::copy_n(tag, nlocal, own_.begin());
   maxexchange = static_cast<int>(longest()) + most_beside;
+}
+
+/// An atom may pass a rank whose atoms have fewer contacts.
+void FixHistory::setup_pre_exchange() { maxexchange = longest_of_ranks() + most_beside; }
+
+void FixHistory::pre_exchange() {
+  collect();
+  setup_pre_exchange();
 }
 
 /// From tags of the last run to those of now; the history with an atom that is gone ends.
@@ -340,8 +355,7 @@ int FixHistory::unpack_exchange(int i, double* buffer) {
 void FixHistory::write_restart(FILE* file) {
   collect();
   const double strain[] = {compute_vector(0), compute_vector(1)};
-  const int most_here = static_cast<int>(longest());
-  MPI_Allreduce(&most_here, &stored_most_, 1, MPI_INT, MPI_MAX, world);
+  stored_most_ = longest_of_ranks();
   if (comm->me != 0) return;
   std::vector<double> stored{restart_form};
   stored.insert(stored.end(), identity_.begin(), identity_.end());

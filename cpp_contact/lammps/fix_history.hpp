@@ -97,7 +97,8 @@ class FixHistory : public LAMMPS_NS::Fix {
   int setmask() override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
-  void pre_exchange() override { collect(); }
+  void setup_pre_exchange() override;
+  void pre_exchange() override;
   void post_run() override;
 
   void grow_arrays(int atoms) override;
@@ -122,6 +123,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   int stride() const { return layout_.values + 1; }
   void remember(int i, LAMMPS_NS::tagint partner, const double* values, bool mirrored);
   size_t longest() const;
+  int longest_of_ranks() const;
 
   LAMMPS_NS::NeighList* const* list_ = nullptr;
   Layout layout_;

@@ -271,3 +271,20 @@ def test_the_share_of_a_wall_follows_a_constant_force(force, words, wanted, tmp_
     assert code == 0, said
     share = float(said.split("SHARE=")[-1].split()[0])
     assert share == pytest.approx(wanted + (0.7 - wanted) * (1 - 1 / 20) ** 30, rel=1e-12)
+
+
+def test_a_sphere_of_many_contacts_crosses_two_faces_of_ranks_at_once(tmp_path):
+    """The rank between has no sphere of many contacts, and room in its buffer for this one."""
+    k = np.arange(4000)
+    height, angle = 1 - (2 * k + 1) / len(k), np.pi * (3 - 5**0.5) * k
+    level = np.sqrt(1 - height**2)
+    around = np.column_stack([level * np.cos(angle), level * np.sin(angle), height])
+    places = [np.zeros(3), *8.196e-3 * around[(around[:, :2] < -0.05).all(axis=1)]]
+    rows = [(1, 4e-4 if k else 0.016, 2500.0, *(x - [1e-5, 1e-5, 0]), *[0.0] * 6) for k, x in enumerate(places)]
+    steps = f"run 8{RESTART.removeprefix('run 250').rpartition('run')[0]}set atom 1 x 1e-6 y 1e-6\nrun 10"
+    one = end_of("thornton", tmp_path / "1", np.array(rows), steps=steps)
+    head = "processors 2 2 1"
+    more = {"steps": steps.replace("clear", f"clear\n{head}"), "head": head, "ranks": 4}
+    four = end_of("thornton", tmp_path / "4", np.array(rows), **more)
+    assert len(rows) > 600 and (np.linalg.norm(one[1:, :3], axis=1) > 1e-3).all()  # all have met
+    assert deviation(four, one) < 1e-9
