@@ -4,6 +4,7 @@
 // force, or f_ID[n] or c_ID[n], a component. For LAMMPS and LIGGGHTS, whose classes have the same names.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -27,10 +28,12 @@ class FixSlowing final : public LAMMPS_NS::Fix {
     source_ = word[3];
     if (const auto at = source_.find('['); at != std::string::npos) {
       component_ = static_cast<int>(value_of(source_.substr(at + 1, source_.size() - at - 2)));
+      if (source_.back() != ']' || component_ < 1) refuse();
       source_.resize(at);
     }
     if (source_.rfind("f_", 0) != 0 && source_.rfind("c_", 0) != 0) refuse();
     slowing_ = {value_of(word[5]), *word[4] == 'r', value_of(word[6]), value_of(word[7]), value_of(word[8])};
+    if (!(slowing_.limit > 0.0 && slowing_.near > 0.0 && slowing_.lag >= 1.0)) refuse();
     scalar_flag = global_freq = nevery = 1;
     extscalar = 0;
   }
@@ -43,7 +46,7 @@ class FixSlowing final : public LAMMPS_NS::Fix {
     compute_ = *source_.c_str() == 'c' && compute >= 0 ? modify->compute[compute] : nullptr;
     const int numbers =
         fix_ ? fix_->size_vector * fix_->vector_flag : (compute_ ? compute_->size_vector * compute_->vector_flag : 0);
-    if (component_ < 0 || numbers < std::max(3, component_)) refuse();
+    if (numbers < std::max(3, component_)) refuse();
   }
   void end_of_step() override { slowing_.follow(force()); }
   double compute_scalar() override { return slowing_.share; }
@@ -67,7 +70,7 @@ class FixSlowing final : public LAMMPS_NS::Fix {
   void refuse() {
     error->all(FLERR,
                "fix slowing/ep: the words are ID group slowing/ep FORCE rises|falls LIMIT NEAR LAG SHARE; FORCE is the "
-               "f_ID or c_ID of a force, or its component");
+               "f_ID or c_ID of a force, or its component; LIMIT and NEAR are above 0, LAG is at least 1");
   }
 
   std::string source_;

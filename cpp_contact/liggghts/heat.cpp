@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "heat.hpp"
 
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <map>

@@ -241,6 +241,11 @@ def test_motion_and_gravity_have_the_bits_of_lammps_own(group, tmp_path):
         ("sphere", "slowing/ep f_w sinks 1 0.1 20 1", "fix slowing/ep: the words are ID group slowing/ep FORCE"),
         ("sphere", "slowing/ep w rises 1 0.1 20 1", "FORCE is the f_ID or c_ID of a force, or its component"),
         ("sphere", "slowing/ep f_w rises 1N 0.1 20 1", "fix slowing/ep: the words are ID group slowing/ep FORCE"),
+        ("sphere", "slowing/ep f_w[12 rises 1 0.1 20 1", "FORCE is the f_ID or c_ID of a force, or its component"),
+        ("sphere", "slowing/ep f_w[0] rises 1 0.1 20 1", "FORCE is the f_ID or c_ID of a force, or its component"),
+        ("sphere", "slowing/ep f_w falls 0 0.1 20 1", "LIMIT and NEAR are above 0, LAG is at least 1"),
+        ("sphere", "slowing/ep f_w rises 1 0 20 1", "LIMIT and NEAR are above 0, LAG is at least 1"),
+        ("sphere", "slowing/ep f_w rises 1 0.1 0 1", "LIMIT and NEAR are above 0, LAG is at least 1"),
     ],
 )
 def test_the_motion_refuses_words_and_points(style, words, sentence, tmp_path):
