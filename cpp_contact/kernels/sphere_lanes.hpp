@@ -143,7 +143,7 @@ int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* ca
     if (!any(near)) continue;
     for (int edge = 1; edge < 4; ++edge) {
       const Lanes beyond = height(edge);
-      near &= (beyond <= (as_listed ? 0.0 : planes.precision)) | (beyond * beyond <= room);
+      near &= (beyond <= 0.0) | (beyond * beyond <= room);
     }
     count += c.keep(near, found + count);
   }

@@ -24,11 +24,9 @@ struct NearTest {
 };
 
 /// Four planes, each by a point and a unit normal: the plane of a triangle, and for each edge the plane through the
-/// edge that is normal to the triangle, with its normal outward. A point beyond an edge by at most `precision` can
-/// count as inside.
+/// edge that is normal to the triangle, with its normal outward.
 struct TrianglePlanes {
   const double *point[4], *normal[4];
-  double precision;
 };
 
 constexpr int pairs_at_once = 64;

@@ -216,6 +216,7 @@ def matrices(text):
 
 
 @tries(80)
+@example(chosen=PLAIN | {"room": "periodic", "walls": "planes across x and y"})
 @given(chosen=CHOICES)
 def test_the_plan_and_the_deck_have_what_the_case_requests(chosen, folder):
     against = sentences_against(chosen)

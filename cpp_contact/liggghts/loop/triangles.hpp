@@ -13,8 +13,7 @@ struct Triangles : LAMMPS_NS::TriMesh {
     double** const sides = (mesh.*(&Triangles::edgeNorm))(triangle);
     double* (LAMMPS_NS::SurfaceMesh<3, 5>::* const face)(int) = &Triangles::surfaceNorm;
     return {{(mesh.*(&Triangles::center_))(triangle), nodes[0], nodes[1], nodes[2]},
-            {(mesh.*face)(triangle), sides[0], sides[1], sides[2]},
-            (mesh.*(&Triangles::precision))()};
+            {(mesh.*face)(triangle), sides[0], sides[1], sides[2]}};
   }
 
   /// The corners of all triangles, nine numbers each, owned and ghosts.
