@@ -44,7 +44,9 @@ def test_a_file_of_the_user_is_kept_until_force_is_given(kind, tmp_path, capsys,
     (tmp_path / name).parent.mkdir()
     (tmp_path / name).write_text("of the user")
     done = call(words, capsys, monkeypatch)
-    assert done.code == 2 and name.split("/")[-1] in done.err and "--force" in done.err and done.err.count("\n") == 1
+    *before, problem = done.err.splitlines()
+    assert done.code == 2 and name.split("/")[-1] in problem and "--force" in problem
+    assert all(line.startswith("warning: ") for line in before)
     assert (tmp_path / name).read_text() == "of the user" and not (tmp_path / "s").exists()
     done = call([*words, "--force"], capsys, monkeypatch)
     assert done.code == 0, done.err
