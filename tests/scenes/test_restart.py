@@ -156,6 +156,7 @@ EMPTY = {
     [
         thorough(path, "liggghts", unless=path.stem in ("hopper_beads", "impactor_bowl", "press_tablet"), id=path.stem)
         for path in SCENES
+        if path.stem != "press_layer"  # ends before it can be stopped
     ]
     + [
         thorough(path, "lammps", unless=path.stem == "adhesive_powder", marks=[needs_lammps], id=f"{path.stem}-lammps")
@@ -176,7 +177,6 @@ def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(case, e
     assert set(a.tables) == set(b.tables)
     stages = {"stages"} if whole.plan.scene.stages else set()
     measured = {"measures", "histograms"} if whole.plan.scene.measure else set()
-    measured |= {"currents"} if any(w.potential is not None for w in whole.plan.scene.wall) else set()
     assert set(a.tables) == {"rows", "particles", "contacts", "energy_balance", "checks", "phases"} | stages | measured
     for name, table in a.tables.items():
         for column in table:
