@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/stability.md, its figures and its tables in docs/data: every extreme case with every law in every engine.
+"""docs/stability.md, its figure and its tables in docs/data: every extreme case with every law in every engine.
 
 Run: .venv/bin/python docs/stability.py [--adhesion | --map | --page]      (needs LIGGGHTS, LAMMPS and YADE; long)
 
@@ -30,14 +30,7 @@ from epdem.verification.models import engine as find_engine
 from epdem.verification.runner import STUDIES
 from epdem.verification.stability.cases import build, extremes
 from epdem.verification.stability.roundoff import FORMULA
-from epdem.verification.stability.running import (
-    BROKEN,
-    CREATED,
-    ERROR,
-    FINE,
-    LEAST_ORDER,
-    WRONG,
-)
+from epdem.verification.stability.running import BROKEN, CREATED, ERROR, FINE, LEAST_ORDER, WRONG
 from epdem.verification.stability.suite import Outcome, summary
 
 MAP, STEPS, WIDEST = "stability_map", (5, 7, 10, 20, 50, 100, 400), 0.5  # steps in contact; a/R
@@ -271,7 +264,7 @@ def main() -> None:
         for name, table in plain.items():
             old = table[~table["law"].isin([*ADHESIVE])]
             store(name, pd.concat([old, sticky[name]], ignore_index=True))
-    found = {name: load(name) for name in NAMES}
+    found = {name: load(name) for name in ("stability_summary", "stability_bulk")}
     save(map_chart(load(MAP)), DOCS / "figures", data=False)
     (DOCS / "stability.md").write_text(document(found, load(MAP)), encoding="utf-8")
 

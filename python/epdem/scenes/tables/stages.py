@@ -62,8 +62,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """One row per phase from the first in which the punch moves towards the wall against it, SI.
 
     asked, reached: pressure of a stage, and that at the step at which it was found to be there, within MISS; error: of
-    both, or of a peak that passes the stage by more. pressure, opposite_pressure: at that step
-    in phases with `until`, else means of the last row of the phase; peak: the largest in the phase. springback: axial
+    reached, or of the peak where the peak is farther above the stage. pressure, opposite_pressure: at that step in
+    phases with `until`, else means of the last row of the phase; peak: the largest in the phase. springback: axial
     strain since the end of the last phase of loading, in phases in which the punch moves away. radial_pressure: of the
     frame at the end of the phase, NaN after a release, where the law leaves too much of it. work, plastic, elastic: as
     in the energy balance.
