@@ -117,28 +117,24 @@ def _drum(runs: Path) -> None:
     (ROOT / "docs/data/drum.csv").write_text(measures.iloc[rows][names].to_csv(index=False, float_format="%.6g"))
 
 
-def _long(runs: Path) -> str:
-    lines = ["| case | steps run | ms per step | steps of the whole | hours of the whole |", "|---|---|---|---|---|"]
+def _long(runs: Path) -> None:
+    """The table of times of the long cases that have run."""
+    rows = []
     for name, whole in STEPS.items():
         seconds, steps = map(sum, zip(*(loop(p) for p in (runs / name).glob("s*1/ep_hertz")), (0.0, 0), strict=True))
         if steps >= SHORT:
             each = seconds / steps
-            lines.append(f"| `{name}` | {steps:,} | {1e3 * each:.1f} | {whole:,} | {each * whole / 3600:.1f} |")
-    return "\n".join(lines) if len(lines) > 2 else ""
+            row = {"case": name, "steps run": steps, "ms per step": 1e3 * each, "steps of the whole": whole}
+            rows.append(row | {"hours of the whole": each * whole / 3600})
+    if rows:
+        (ROOT / "docs/data/community_times.csv").write_text(pd.DataFrame(rows).to_csv(index=False, float_format="%.1f"))
 
 
-def _points(points: pd.DataFrame) -> str:
-    """Every measured number with what the laws give in LIGGGHTS."""
+def _points(points: pd.DataFrame) -> pd.DataFrame:
+    """Every measured number [SI] with the relative errors of the laws in LIGGGHTS."""
     here = points[points["engine"] == "liggghts"]
-    here = here.assign(error=[f"{e:+.1%}" for e in here["error"]])
-    wide = here.pivot_table(
-        index=["number", "set", "quantity", "measured", "speed"], columns="law", values="error", aggfunc="first"
-    ).reset_index()
-    wide["measured"] = [
-        f"{m:g}" if q == "e_n" else f"{1e3 * m:g} mm" for m, q in zip(wide["measured"], wide["quantity"], strict=True)
-    ]
-    wide["speed"] = [f"{v:g} m/s" for v in wide["speed"]]
-    return markdown(wide)
+    keys = ["number", "set", "quantity", "measured", "speed"]
+    return here.pivot_table(index=keys, columns="law", values="error", aggfunc="first").reset_index()
 
 
 def restitution_table(points: pd.DataFrame) -> pd.DataFrame:
@@ -162,8 +158,9 @@ def main() -> None:
     replace_tables("evidence", {"restitution": markdown(load("restitution"))})
     _impact(runs)
     _drum(runs)
-    tables = {"impact": impact_table(load("impact_25k")), "long": _long(runs), "points": _points(result.points)}
-    replace_tables("benchmarks", tables)
+    _long(runs)
+    store("measured_points", _points(result.points))
+    replace_tables("benchmarks", {"impact": impact_table(load("impact_25k"))})
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ FIGURES = {  # the command, and where the figure is then
     "figure_8_19.png": ("epdem verify figures -o runs/figures", "runs/figures/figure_8_19.png"),
     "thornton_ning_1998.png": ("epdem verify figures -o runs/figures", "runs/figures/thornton_ning_1998.png"),
     "laws.png": (".venv/bin/python docs/laws.py", "docs/figures/laws.png"),
+    "crosscheck.png": (".venv/bin/python docs/crosscheck.py", "docs/figures/crosscheck.png"),
     "cost.png": (".venv/bin/python docs/cost.py", "docs/figures/cost.png"),
     "stability_map.png": (".venv/bin/python docs/stability.py", "docs/figures/stability_map.png"),
     "validate.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/validate.png"),

@@ -28,7 +28,7 @@ HEAD = """# Claims and their tests
 maximum over all speeds and 8 starting phases. A test runs the commands again.
 
 The rows compare an engine with the theory of the same law: they verify the numerics, not that a metal obeys the law.
-Measured impacts are ten numbers from two kinds of sources ([benchmarks.md](benchmarks.md#measured-restitution)).
+Measured impacts are ten numbers from two kinds of sources ([evidence](evidence.md#measured-impacts)).
 
 | claim | value | tolerance | compared with | command | test |
 |---|---|---|---|---|---|
