@@ -35,10 +35,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
 def chart(found: pd.DataFrame) -> Chart:
     """Errors of e_n by case, one line of the figure per model, the first at the top."""
     places = -found.index.to_numpy(float)
-    errors = [
-        Series(name, found[f"e_n: {name}"].to_numpy(), places, k, None, k)
-        for k, name in enumerate(CASES)
-    ]
+    errors = [Series(name, found[f"e_n: {name}"].to_numpy(), places, k, None, k) for k, name in enumerate(CASES)]
     lines = Axis("", low=places.min() - 0.5, high=0.5, ticks=dict(zip(places, found["model"], strict=True)))
     return Chart(
         "crosscheck",
@@ -49,7 +46,7 @@ def chart(found: pd.DataFrame) -> Chart:
 
 
 def main() -> None:
-    """Run the cases; write the table of all numbers, the table of the page and the figure (`--page`: from the table)."""
+    """Run the cases (not with `--page`); write the table of all numbers, the table of the page and the figure."""
     if sys.argv[1:] != ["--page"]:
         found = [crosscheck(DOCS.parent / f"cases/{name}.toml").table.assign(case=name) for name in CASES]
         store("crosscheck", pd.concat(found, ignore_index=True))
