@@ -267,6 +267,7 @@ void FixWall::finish(int n) {
   if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);
   if (pair_->energies()) note(n);
+  note_forces(b, n);
 }
 
 /// Writes the rows of a `dump local`.
@@ -438,17 +439,20 @@ void FixWallRegion::exchange_motion(bool recalls) {
 }
 
 void FixWallRegion::write_restart(FILE* file) {
+  std::vector<double> values{static_cast<double>(motion_.size())};
+  values.insert(values.end(), motion_.begin(), motion_.end());
+  add_to_restart(values);
   if (comm->me != 0) return;
-  const int bytes = static_cast<int>((1 + motion_.size()) * sizeof(double));
-  const double count = motion_.size();
+  const int bytes = static_cast<int>(values.size() * sizeof(double));
   fwrite(&bytes, sizeof bytes, 1, file);
-  fwrite(&count, sizeof count, 1, file);
-  fwrite(motion_.data(), sizeof(double), motion_.size(), file);
+  fwrite(values.data(), sizeof(double), values.size(), file);
 }
 
 void FixWallRegion::restart(char* stored) {
   const double* const values = reinterpret_cast<const double*>(stored);
-  motion_.assign(values + 1, values + 1 + static_cast<size_t>(values[0]));
+  const double* const end = values + 1 + static_cast<size_t>(values[0]);
+  motion_.assign(values + 1, end);
+  take_from_restart(end);
 }
 
 void FixWallRegion::note_placement() {

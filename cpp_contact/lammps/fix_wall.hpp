@@ -68,6 +68,8 @@ class FixWall : public LAMMPS_NS::Fix {
   virtual void note_placement() {}
   /// Upper limit of the way of the surface since its placement was noted [length].
   virtual double way() const { return 0.0; }
+  /// Called with n contacts that have their forces.
+  virtual void note_forces(const kernels::Block&, int /*n*/) {}
   /// Called before candidates are chosen; holds: until they are chosen again, no other sphere can touch the wall.
   virtual void begin_search(bool /*holds*/) {}
 
@@ -148,6 +150,9 @@ class FixWallRegion : public FixWall {
   bool moves() const override { return moves_; }
   void note_placement() override;
   double way() const override;
+  /// Values of a restart file beside the motion. Collective.
+  virtual void add_to_restart(std::vector<double>&) {}
+  virtual void take_from_restart(const double*) {}
 
  private:
   void exchange_motion(bool recalls);

@@ -6,10 +6,15 @@
 #include <cstring>
 #include <string>
 
+#include "comm.h"
 #include "domain.h"
+#include "epdem/wear.hpp"
 #include "error.h"
 #include "kernels/triangles.hpp"
+#include "modify.h"
 #include "stl.hpp"
+#include "update.h"
+#include "utils.h"
 
 namespace epdem::lammps {
 
@@ -62,6 +67,19 @@ class MeshRegion final : public Region {
     return triangle;
   }
 
+  /// The triangle of the file that a triangle is or is an image of.
+  int own(int triangle) const { return triangle % own_; }
+  int size() const { return own_; }
+  double area(int triangle) const { return 0.5 * length(cross(surface[triangle].ab, surface[triangle].ac)); }
+  /// The normal where the wall is now.
+  Vec<double> normal(int triangle) const {
+    const Vec<double> n = surface[triangle].normal;
+    if (!rotateflag) return n;
+    const Vec<double> axis{runit[0], runit[1], runit[2]};
+    const double cosine = std::cos(theta);
+    return cosine * n + std::sin(theta) * cross(axis, n) + (1.0 - cosine) * dot(axis, n) * axis;
+  }
+
   int inside(double, double, double) override { return 0; }
   int surface_interior(double*, double) override { return 0; }
   int surface_exterior(double* x, double distance) override {
@@ -99,18 +117,24 @@ FixWallMesh::FixWallMesh(LAMMPS* lmp, int count, char** word) : FixWallRegion(lm
   std::vector<double> corners;
   const std::string wrong = read_stl(word[4], corners);
   if (!wrong.empty()) error->all(FLERR, "{}: file {}: {}", place_, word[4], wrong);
-  int first = 5;
-  for (bool moves = true; moves;) {
-    const int words = std::strcmp(word[first], "move") == 0 ? 4 : std::strcmp(word[first], "rotate") == 0 ? 8 : 0;
-    moves = words > 0;
-    first += words;
-    if (first >= count) error->all(FLERR, "{}: the law is missing behind the motion", place_);
-  }
   std::string fixed[] = {id, "mesh/ep", "units", "box"};
   std::vector<char*> words;
   for (std::string& text : fixed) words.push_back(text.data());
-  words.insert(words.end(), word + 5, word + first);
+  int first = 5;
+  for (int more = 1; more > 0; first += more) {
+    const std::string name = word[first];
+    more = name == "move" ? 4 : name == "rotate" ? 8 : name == "wear" ? 2 : 0;
+    if (first + more >= count) error->all(FLERR, "{}: the law is missing behind {}", place_, name);
+    if (name != "wear") {
+      words.insert(words.end(), word + first, word + first + more);
+      continue;
+    }
+    wear_ = utils::is_double(word[first + 1]) ? std::atof(word[first + 1]) : 0.0;
+    if (!(wear_ > 0.0)) error->all(FLERR, "{}: wear {} must be a number above zero", place_, word[first + 1]);
+  }
   mesh_ = std::make_unique<MeshRegion>(lmp, corners, static_cast<int>(words.size()), words.data());
+  force_.resize(3 * mesh_->size());
+  if (wear_ > 0.0) worn_.resize(mesh_->size());
   read(first, count, word, mesh_->tmax);
 }
 
@@ -141,6 +165,65 @@ bool FixWallMesh::is_near(int i, double distance) {
   return true;
 }
 
+void FixWallMesh::begin() {
+  FixWallRegion::begin();
+  for (const int t : pressed_) std::fill_n(force_.data() + 3 * t, 3, 0.0);
+  pressed_.clear();
+}
+
+void FixWallMesh::note_forces(const kernels::Block& b, int n) {
+  const auto part = [](const auto& lines, int k) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
+  for (int k = 0; k < n; ++k) {
+    const int t = mesh_->own(b.j[k]);
+    const Vec<double> force = part(b.force, k);
+    pressed_.push_back(t);
+    force_[3 * t] -= force.x;
+    force_[3 * t + 1] -= force.y;
+    force_[3 * t + 2] -= force.z;
+    if (worn_.empty() || update->setupflag) continue;
+    const double* const v = atom->v[b.i[k]];
+    const Vec<double> beside = Vec<double>{v[0], v[1], v[2]} - part(b.wall_v, k);
+    worn_[t] += worn_volume(wear_, length(force), beside, part(b.from_wall, k), mesh_->normal(t), update->dt);
+  }
+}
+
+/// Over the ranks, on all of them.
+std::vector<double> FixWallMesh::sum(const std::vector<double>& of_rank) const {
+  std::vector<double> found(of_rank.size());
+  MPI_Allreduce(of_rank.data(), found.data(), static_cast<int>(found.size()), MPI_DOUBLE, MPI_SUM, world);
+  return found;
+}
+
+std::vector<double> FixWallMesh::table() const {
+  const std::vector<double> force = sum(force_), worn = sum(worn_);
+  std::vector<double> found;
+  for (int t = 0; comm->me == 0 && t < mesh_->size(); ++t) {
+    const Vec<double> all{force[3 * t], force[3 * t + 1], force[3 * t + 2]}, normal = mesh_->normal(t);
+    const double area = mesh_->area(t), pressed = dot(all, normal);
+    const double values[] = {double(t), area, std::fabs(pressed) / area, length(all - pressed * normal) / area,
+                             worn.empty() ? 0.0 : worn[t] / area};
+    found.insert(found.end(), values, values + table_columns);
+  }
+  return found;
+}
+
+/// A run that goes on and a run from the file add up in the same order: rank 0 has the sum.
+void FixWallMesh::add_to_restart(std::vector<double>& values) {
+  worn_ = sum(worn_);
+  values.push_back(static_cast<double>(worn_.size()));
+  values.insert(values.end(), worn_.begin(), worn_.end());
+  if (comm->me != 0) std::fill(worn_.begin(), worn_.end(), 0.0);
+}
+
+void FixWallMesh::take_from_restart(const double* values) {
+  const auto count = static_cast<std::size_t>(values[0]);
+  if (worn_.empty() || count == 0) return;
+  if (count != worn_.size())
+    error->all(FLERR, "{}: the restart file has the wear of {} triangles, and the wall has {}", place_, count,
+               worn_.size());
+  if (comm->me == 0) std::copy_n(values + 1, count, worn_.begin());
+}
+
 void FixWallMesh::find(int i, std::vector<Contact>& found) {
   mesh_->candidates = lists_hold_ ? &near_[i] : nullptr;
   FixWallRegion::find(i, found);
@@ -160,6 +243,27 @@ void FixWallMesh::pass_records(int i, const std::vector<Contact>& found) {
   kernels::pass_records(
       before, now, atom->radius[i], [&](int t) -> const kernels::Triangle& { return surface[t]; },
       [&](std::size_t k, std::size_t c) { record(i, static_cast<int>(k))[0] = now[c]; });
+}
+
+ComputeTriangles::ComputeTriangles(LAMMPS* lmp, int count, char** word)
+    : Compute(lmp, count, word), name_(count == 4 ? word[3] : "") {
+  if (count != 4) error->all(FLERR, "compute {}: the words are ID group triangles/ep FIX", style_name);
+  local_flag = 1;
+  size_local_cols = FixWallMesh::table_columns;
+}
+
+void ComputeTriangles::init() {
+  wall_ = dynamic_cast<FixWallMesh*>(modify->get_fix_by_id(name_));
+  if (!wall_) error->all(FLERR, "compute {}: there is no fix wall/ep mesh {}", style_name, name_);
+}
+
+void ComputeTriangles::compute_local() {
+  invoked_local = update->ntimestep;
+  values_ = wall_->table();
+  rows_.clear();
+  for (std::size_t k = 0; k < values_.size(); k += size_local_cols) rows_.push_back(values_.data() + k);
+  size_local_rows = static_cast<int>(rows_.size());
+  array_local = rows_.data();
 }
 
 }  // namespace epdem::lammps

@@ -41,6 +41,10 @@ void* create_fix(void* lmp, int count, char** word) {
   return new Fix(static_cast<LAMMPS_NS::LAMMPS*>(lmp), count, word);
 }
 
+void* create_compute(void* lmp, int count, char** word) {
+  return new epdem::lammps::ComputeTriangles(static_cast<LAMMPS_NS::LAMMPS*>(lmp), count, word);
+}
+
 void* create_wall(void* lmp, int count, char** word) {
   const bool is_mesh = count > 3 && std::strcmp(word[3], "mesh") == 0;
   return (is_mesh ? create_fix<epdem::lammps::FixWallMesh> : create_fix<epdem::lammps::FixWallPlanes>)(lmp, count,
@@ -80,4 +84,6 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
         reinterpret_cast<void*>(&create_wall));
   style("fix", FixWallRegion::style_name, "elastic-plastic contacts with a region",
         reinterpret_cast<void*>(&create_fix<FixWallRegion>));
+  style("compute", ComputeTriangles::style_name, "stress and wear of triangles",
+        reinterpret_cast<void*>(&create_compute));
 }

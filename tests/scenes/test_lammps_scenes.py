@@ -281,10 +281,6 @@ def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
     [
         ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it"),
         (
-            {"wall": [FLOOR, PLATE | {"wear": "1e-12 m^2/N"}]},
-            "scene.wall.lid.wear = 1e-12: wear is a sum over all steps",
-        ),
-        (
             {"wall": [FLOOR, PLATE], "phase": turned("z")},
             "phase.turn.move = 'rotate': a region of LAMMPS takes the axis",
         ),

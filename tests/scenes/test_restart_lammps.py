@@ -30,7 +30,7 @@ def moving(**output) -> dict:
     """A bed on a table that shakes, is lifted and stops, under a plate that a force drives, around a stirrer; a plane
     that is there in two phases, spheres that come with others, two phases that a condition ends, one without frames."""
     table = PLATE | {"name": "table", "center": ["0 mm", "0 mm", "2 mm"], "size": ["16 mm", "17 mm"]}
-    lid = PLATE | {"center": ["0 mm", "0 mm", "36 mm"]}
+    lid = PLATE | {"center": ["0 mm", "0 mm", "36 mm"], "wear": "1e-9 m^2/N"}
     stirrer = PLATE | {"name": "stirrer", "axis": "x", "center": ["0 mm", "0 mm", "6 mm"], "size": ["8 mm", "5 mm"]}
     gate = FLOOR | {"name": "gate", "at": "1 mm", "phases": ["shake", "press"]}
     bed = BED | {"region": BED["region"] | {"z": ["10 mm", "34 mm"]}}
@@ -59,8 +59,9 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
     ends = log.ends(out)
     assert not log.not_reached(out) and [*ends] == [phase.name for phase in p.phases]
     ended = p.with_ends(ends)
-    whole = tables.particles(Frames(ended, tmp_path, tables.kinds(ended))), tables.rows(ended, out)
-    assert (whole[1]["lid_force_z"] > 0.1).any()
+    whole = [read(Frames(ended, tmp_path, tables.kinds(ended))) for read in (tables.particles, tables.wall_table)]
+    rows = tables.rows(ended, out)
+    assert (rows["lid_force_z"] > 0.1).any() and whole[1]["wear"].any()
     steps = restart_steps(tmp_path)[:-1]
     # a phase that its condition ends between two restart files has none at its end
     at_ends = {ends[name] for name in ("shake", "press", "hold", "lift")} & {*steps}
@@ -69,9 +70,9 @@ def test_a_run_with_moving_walls_goes_on_bitwise(tmp_path):
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
         assert log.ends(out) == ends, step
-        assert tables.particles(Frames(ended, tmp_path, tables.kinds(ended))).equals(whole[0]), step
-        again = tables.rows(ended, out)
-        np.testing.assert_array_equal(again, whole[1], err_msg=str(step))
+        frames = Frames(ended, tmp_path, tables.kinds(ended))
+        assert tables.particles(frames).equals(whole[0]) and tables.wall_table(frames).equals(whole[1]), step
+        np.testing.assert_array_equal(tables.rows(ended, out), rows, err_msg=str(step))
 
 
 def test_motions_that_liggghts_cannot_continue_are_refused_there():

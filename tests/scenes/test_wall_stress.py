@@ -16,6 +16,7 @@ from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
+from epdem.jobs.engine import check
 from epdem.scenes.plan.plan import plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
@@ -66,8 +67,8 @@ def test_two_walls_of_a_material_wear_alike_and_frames_are_needed():
         scene_deck.files(plan(parse(data)))
     with pytest.raises(CaseError, match=r"scene.wall.box: stress and wear are written with the frames"):
         plan(parse(scene(particles=0)))
-    with pytest.raises(CaseError, match="continued run does not know the wear of wall box"):
-        plan(parse(scene(wear="1e-9 m^2/N", restarts=1)))
+    with pytest.raises(CaseError, match=r"LIGGGHTS's restart files lack the wear of wall box.* lammps"):
+        check(scene_engine("liggghts"), plan(parse(scene(wear="1e-9 m^2/N", restarts=1))))
 
 
 def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "iron"), spheres=("glass", "glass")):
@@ -124,32 +125,25 @@ def test_stress_and_wear_in_yade_are_those_in_liggghts(tmp_path):
 
 @needs_lammps
 @pytest.mark.liggghts
-@pytest.mark.parametrize("kind", ["plate", "stl"])
-def test_stress_in_lammps_is_that_in_liggghts(kind, tmp_path):
-    data = strikes(None, None)
-    corners = 1e-3 * np.array([(-4.5, -9, 0), (4.5, -9, 0), (4.5, 9, 0), (-4.5, 9, 0)])
-    write_stl(tmp_path / "plate.stl", corners[[[0, 1, 2], [0, 2, 3]]])
-    for k, wall in enumerate(data["scene"]["wall"]):
-        wall["stress"] = True
-        if kind == "stl":
-            stl = {"kind": "stl", "file": "plate.stl", "position": wall["center"], "stress": True}
-            data["scene"]["wall"][k] = {key: wall[key] for key in ("name", "material")} | stl
+@pytest.mark.parametrize("kind", ["plate", "stl", "turn"])
+def test_stress_and_wear_in_lammps_are_those_in_liggghts(kind, tmp_path):
+    """turn: one plate turns by ten degrees."""
+    data = strikes("1e-9 m^2/N", "3e-9 m^2/N")
+    if kind == "stl":
+        corners = 1e-3 * np.array([(-4.5, -9, 0), (4.5, -9, 0), (4.5, 9, 0), (-4.5, 9, 0)])
+        write_stl(tmp_path / "plate.stl", corners[[[0, 1, 2], [0, 2, 3]]])
+        for k, wall in enumerate(data["scene"]["wall"]):
+            stl = {"kind": "stl", "file": "plate.stl", "position": wall["center"]}
+            data["scene"]["wall"][k] = {key: wall[key] for key in ("name", "material", "wear")} | stl
+    elif kind == "turn":
+        turn = {"wall": "right", "kind": "rotate", "axis": "-x", "origin": ["5 mm", "0 mm", "0 mm"], "rate": "300 rpm"}
+        (phase,) = data["scene"]["phase"]  # the second one begins while spheres touch both plates
+        times = {"strike": "0.24 ms", "slide": "5.76 ms"}
+        data["scene"]["phase"] = [phase | {"name": n, "duration": t, "move": [turn]} for n, t in times.items()]
     path = write_case(data, tmp_path)
     ours, theirs = (run(path, engine=tool, out=tmp_path / tool).results.walls for tool in ("lammps", "liggghts"))
-    assert max(deviations(ours, theirs, "area", "normal_stress", "shear_stress")) <= 1e-9
-    assert not ours["wear"].any() and list(ours.columns) == list(theirs.columns)
-
-
-def test_lammps_says_which_walls_have_no_stress_and_that_none_wears():
-    lammps = scene_engine("lammps")
-    with pytest.raises(CaseError, match=r"scene\.wall\.left\.wear.*wear is a sum over all steps"):
-        lammps.files(plan(parse(strikes("1e-9 m^2/N", None))))
-    data = strikes(None, None)
-    data["scene"]["wall"][1]["stress"] = True
-    turn = {"wall": "right", "kind": "rotate", "axis": "+z", "origin": ["5 mm", "0 mm", "0 mm"], "rate": "60 rpm"}
-    data["scene"]["phase"][0]["move"] = [turn]
-    with pytest.raises(CaseError, match=r"scene\.wall\.right\.stress.*the wall turns"):
-        lammps.files(plan(parse(data)))
+    assert max(deviations(ours, theirs, "area", "normal_stress", "shear_stress", "wear")) <= 1e-9
+    assert list(ours.columns) == list(theirs.columns)
 
 
 @pytest.mark.yade("module")

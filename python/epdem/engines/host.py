@@ -43,8 +43,15 @@ class Host(Engine[Any, Any]):
     launcher: ModuleType  # missing, version, run and OUT (file of both streams) of the program
     scripts = ("in.impact", "in.scene")  # names of the decks
     leftovers: tuple[str, ...] = (  # patterns of files that an earlier run of a scene may have left in the folder
-        *("particles.*.*", "contacts*.*.*", "wall_contacts.*.txt", "triangles.*.npy", "stress_*.vtk", "picture.*.ppm"),
-        *("restart.*.bin", "in.resume"),
+        *(
+            "particles.*.*",
+            "contacts*.*.*",
+            "wall_contacts.*.txt",
+            "triangles.*.npy",
+            "stress_*.*.vtk",
+            "stress_*.*.txt",
+        ),
+        *("picture.*.ppm", "restart.*.bin", "in.resume"),
     )
     scene_deck: ModuleType  # deck and files of a scene
     # trajectory of impacts; kinds of frames of a scene, from which particles, contact_table and wall_table; rows

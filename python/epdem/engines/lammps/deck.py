@@ -52,10 +52,9 @@ class ImpactDeck:
 
 def check(p: ScenePlan) -> None:
     """Raise CaseError for what a scene in LAMMPS does not have."""
-    m, out = p.model, p.output
+    m = p.model
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
-    refuse("output.pictures", out.pictures, "there are none")
     for fill in p.insertions:
         refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")
     if not len(placement.spheres(p)):
@@ -157,8 +156,7 @@ def deck(p: ScenePlan) -> SceneDeck:
     return SceneDeck(
         plan=p,
         skin=p.case.numerics.skin or default_skin(p),
-        settings=" energies" * (p.output.energy or p.contacts > 0 or p.heat is not None or p.stress_walls != ())
-        + " strain",
+        settings=" energies" * (p.output.energy or p.contacts > 0 or p.heat is not None) + " strain",
         materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
         pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),

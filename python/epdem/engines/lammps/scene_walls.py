@@ -55,11 +55,9 @@ def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
     found = []
     for name, mesh in p.scene.meshes.items():
         id, motion = wall_id(name), _motion_words(p, name)
-        turns = mesh.stress and "turn" in _changing(p, name)
-        refuse(f"scene.wall.{name}.stress", turns, "the wall turns, and the table has the normals at its start")
-        refuse(f"scene.wall.{name}.wear", mesh.wear, "wear is a sum over all steps")
-        if isinstance(mesh, StlWall) or mesh.stress:
-            where = f"wall/ep mesh {name}.stl {motion}".rstrip()
+        if isinstance(mesh, StlWall) or name in p.stress_walls:
+            wear = f"wear {number(mesh.wear)}" if mesh.wear else ""
+            where = " ".join(filter(None, [f"wall/ep mesh {name}.stl", motion, wear]))
             found.append(DeckWall(id, (), where, contact(p, name)))
             continue
         shapes = list(_shapes(p, mesh))

@@ -20,6 +20,8 @@ from ..input_script import torque_origin
 from .deck import END, PATH, contact_walls
 from .launcher import OUT
 
+TRIANGLES = ("triangle", "area", "normal_stress", "shear_stress", "wear")  # columns of compute triangles/ep
+
 
 def impact_frames(path: Path, frames: int, bodies: int) -> np.ndarray:
     """A dump without headers and ids, shape (frames, bodies, columns - 1). Raises EngineError if it is incomplete."""
@@ -50,7 +52,7 @@ def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres, contacts between them, and with each wall."""
     values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
     found = {"particles": (p.frame_steps(p.frames), columns.columns_of_frames(p))} if p.frames else {}
-    found |= {f"stress_{wall_id(n)}": (p.frame_steps(p.frames), ["triangle", *columns.FORCE]) for n in p.stress_walls}
+    found |= {f"stress_{wall_id(name)}": (p.frame_steps(p.frames), [*TRIANGLES]) for name in p.stress_walls}
     if p.contacts:
         steps, of_wall = p.frame_steps(p.contacts), ["i", *values, *columns.NORMAL]
         found["contacts"] = steps, ["i", "j", *values]
@@ -76,21 +78,10 @@ def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
 
 
 def wall_table(frames: Frames) -> pd.DataFrame:
-    """Stresses of the triangles of walls in every frame, as in LIGGGHTS. Triangle t of n has images t + k n."""
-    p, tables = frames.plan, []
-    for name in p.stress_walls:
-        kind, corners = f"stress_{wall_id(name)}", p.triangles[name]
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        twice = np.linalg.norm(across, axis=1, keepdims=True)
-        raw = frames.table(kind)
-        for step in (n for n in frames.kinds[kind][1] if n not in frames.without):
-            of_step = raw[raw["step"] == step]
-            force = np.zeros((len(corners), 3))
-            np.add.at(force, of_step["triangle"].to_numpy(int) % len(corners), of_step[columns.FORCE].to_numpy())
-            pressed = (force * across / twice).sum(axis=1, keepdims=True)
-            stress = np.hstack([np.abs(pressed), np.linalg.norm(force - pressed * across / twice, axis=1)[:, None]])
-            stress /= 0.5 * twice
-            each = {"step": step, "wall": name, "triangle": np.arange(len(corners)), "area": 0.5 * twice[:, 0]}
-            each |= {"normal_stress": stress[:, 0], "shear_stress": stress[:, 1], "wear": 0.0}
-            tables.append(pd.DataFrame(each))
+    """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS."""
+    tables = []
+    for name in frames.plan.stress_walls:
+        table = frames.table(f"stress_{wall_id(name)}").astype({"triangle": int})
+        table.insert(1, "wall", name)
+        tables.append(table)
     return pd.concat(tables, ignore_index=True)

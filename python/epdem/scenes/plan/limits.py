@@ -138,10 +138,6 @@ def refuse_combinations(case: SceneCase, s: Parts) -> None:
             continue
         if (w.stress or w.wear) and not case.output.particles:
             raise CaseError(f"scene.wall.{w.name}: stress and wear are written with the frames; give output.particles")
-        if w.wear and case.output.restarts:
-            raise CaseError(
-                f"output.restarts: a continued run does not know the wear of wall {w.name}; remove one of both"
-            )
 
 
 def overlaps(spheres: Sequence[Sphere], s: Parts) -> tuple[IntArray, IntArray, FloatArray]:
