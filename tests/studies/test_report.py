@@ -203,7 +203,7 @@ def test_a_drawing_of_a_page_has_its_numbers_and_no_markup_of_a_label():
     x, y = np.linspace(1.0, 3.0, 7), np.array([3, 1, 4, 1, 5, 9, 2.0])
     line = [chart.Series("<script>a & b</script>", x, y, 0)]
     axes = chart.Axis("speed", "m/s", low=1.0, high=3.0), chart.Axis("a <b>", "N", low=0.0, high=10.0)
-    text = chart.Drawing(chart.Chart("x", "title", "x", [chart.Panel(*axes, line)])).svg()
+    text = chart.svg(chart.laid_out(chart.Chart("x", "title", "x", [chart.Panel(*axes, line)])))
     root = ElementTree.fromstring(text)
     (drawn, *_) = [
         re.findall(r"[ML] (\S+) (\S+)", e.attrib["d"])

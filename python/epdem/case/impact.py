@@ -6,7 +6,7 @@ Every mistake is a CaseError that names file, key, value, limit and next step.
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Generic, Literal, Self
 
 import numpy as np
 from pydantic import Field, Tag, ValidationError, model_validator
@@ -23,6 +23,7 @@ from .fields import (
     Quantity,
     Speed,
     Spin,
+    T,
     Tangential,
     Viscous,
     by_shape,
@@ -55,21 +56,15 @@ class Target(Frozen):
     radius: Length | None = None
 
 
-class SpeedRange(Interval[Speed]):
-    """Speeds from `from` to `to`, evenly spaced in the logarithm."""
-
-    count: Annotated[int, Field(ge=2, le=1000)]
-
-
-class AngleRange(Interval[Angle]):
-    """Angles from `from` to `to`, evenly spaced."""
+class Range(Interval[T], Generic[T]):
+    """`count` values from `from` to `to`: angles evenly spaced, speeds evenly in the logarithm."""
 
     count: Annotated[int, Field(ge=2, le=1000)]
 
 
 LISTED = Field(min_length=1, max_length=1000)
-Speeds = Annotated[Annotated[SpeedRange, Tag("table")] | Annotated[list[Speed], LISTED, Tag("plain")], by_shape()]
-Angles = Annotated[Annotated[AngleRange, Tag("table")] | Annotated[list[Angle], LISTED, Tag("plain")], by_shape()]
+Speeds = Annotated[Annotated[Range[Speed], Tag("table")] | Annotated[list[Speed], LISTED, Tag("plain")], by_shape()]
+Angles = Annotated[Annotated[Range[Angle], Tag("table")] | Annotated[list[Angle], LISTED, Tag("plain")], by_shape()]
 
 
 class Impact(Frozen):
@@ -97,7 +92,7 @@ class Impact(Frozen):
 
     def speed_values(self) -> np.ndarray:
         """Approach speeds [m/s], shape (n,)."""
-        if isinstance(self.speeds, SpeedRange):
+        if isinstance(self.speeds, Range):
             return np.geomspace(self.speeds.start, self.speeds.to, self.speeds.count)
         return np.array(self.speeds)
 
@@ -108,7 +103,7 @@ class Impact(Frozen):
 
     def rows(self) -> np.ndarray:
         """Speed [m/s], angle [rad] and spin [rad/s] of each combination, shape (3, n)."""
-        if isinstance(self.angles, AngleRange):
+        if isinstance(self.angles, Range):
             angles = np.linspace(self.angles.start, self.angles.to, self.angles.count)
         else:
             angles = np.array(self.angles or [0.0])

@@ -189,6 +189,8 @@ Wall = Annotated[AnyWall, Field(discriminator="kind")]
 
 
 Time = Annotated[float, Quantity("s", above=0.0)]
+OF_WALL = ("force", "force_below", "travel", "height", "density")
+CONDITIONS = ("kinetic_energy", "count", *OF_WALL)
 
 
 class Until(Frozen):
@@ -212,11 +214,11 @@ class Until(Frozen):
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        of_wall = (self.force, self.force_below, self.travel, self.height, self.density)
-        if sum(x is not None for x in (self.kinetic_energy, self.count, *of_wall)) != 1:
-            raise ValueError("give one of kinetic_energy, count, force, force_below, travel, height and density")
-        if (self.wall is None) != all(x is None for x in of_wall):
-            raise ValueError("'wall' belongs to force, force_below, travel, height and density, and only to them")
+        given = [key for key in CONDITIONS if getattr(self, key) is not None]
+        if len(given) != 1:
+            raise ValueError(f"give one of {', '.join(CONDITIONS[:-1])} and {CONDITIONS[-1]}")
+        if (self.wall is None) == (given[0] in OF_WALL):
+            raise ValueError(f"'wall' belongs to {', '.join(OF_WALL[:-1])} and {OF_WALL[-1]}, and only to them")
         return self
 
     @property
@@ -227,9 +229,7 @@ class Until(Frozen):
     @property
     def limit(self) -> float:
         """The value of the one condition: [J], number of spheres, [N], [m] or a relative density."""
-        of_wall = (self.force, self.force_below, self.travel, self.height, self.density)
-        values = (self.kinetic_energy, self.count, *of_wall)
-        return float(next(x for x in values if x is not None))
+        return float(next(x for key in CONDITIONS if (x := getattr(self, key)) is not None))
 
 
 class CasePhase(Frozen):
@@ -244,10 +244,9 @@ class CasePhase(Frozen):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        walls = [m.wall for m in self.move]
-        for wall in walls:
-            if walls.count(wall) > 1:
-                raise ValueError(f"two motions of wall {wall!r}; give one")
+        if len(self.moves) < len(self.move):
+            wall = max(walls := [m.wall for m in self.move], key=walls.count)
+            raise ValueError(f"two motions of wall {wall!r}; give one")
         if self.until and (self.until.after or 0.0) >= self.duration:
             raise ValueError("until.after must be below duration")
         linear = [m.wall for m in self.move if any(m.constant_velocity or ())]

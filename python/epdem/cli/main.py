@@ -32,6 +32,12 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
+DECKS: dict[str, tuple[tuple[str, ...], str]] = {  # the options that a kind of deck takes, and why not others
+    "check": ((), "--check takes nothing but a LIGGGHTS deck"),
+    "convert": (("out", "law", "set", "force"), "--convert takes nothing but a LIGGGHTS deck"),
+    "own": (("out", "case", "set", "force"), "an own template makes a LIGGGHTS deck with the law of its case"),
+    "case": (("out", "engine", "law", "reasons", "force"), "it goes with an own template (.j2)"),
+}
 NUMBERS = {"number": "a number", "integer": "a whole number"}  # by the words of pydantic
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
@@ -156,13 +162,21 @@ def deck(
 
     Example: epdem deck --convert my.in --set yieldPressure=1e8 -o converted
     """
+    kind = "check" if check else "convert" if convert else "own" if file.suffix == ".j2" else "case"
+    takes, reason = DECKS[kind]
+    options: dict[str, object] = {
+        "out": out,
+        "law": law,
+        "case": case,
+        "set": given,
+        "reasons": reasons,
+        "force": force,
+    }
+    options |= {"engine": None if engine == DEFAULT_ENGINE else engine, "convert": check and convert}
+    refuse_options(file, reason, **{name: value for name, value in options.items() if name not in takes})
+    if len(law or []) > 1:
+        raise CaseError(f"{file}: --law: a deck has one law; write one deck for each")
     if check:
-        refuse_options(
-            file, "--check takes nothing but a LIGGGHTS deck", out=out, law=law, case=case, set=given, convert=convert
-        )
-        refuse_options(file, "--check takes nothing but a LIGGGHTS deck", reasons=reasons, force=force)
-        if engine != DEFAULT_ENGINE:
-            raise CaseError(f"{file}: --check reads LIGGGHTS decks; leave out --engine")
         from ..tools.deck_checks import check_file
 
         found = check_file(file)
@@ -170,11 +184,6 @@ def deck(
     if out is None:
         raise CaseError(f"{file}: --out is missing; name a folder for the deck")
     if convert:
-        refuse_options(file, "--convert takes nothing but a LIGGGHTS deck", case=case, reasons=reasons)
-        if engine != DEFAULT_ENGINE or len(law or []) > 1:
-            raise CaseError(
-                f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
-            )
         from ..studies.sweep.points import settings as values_of
         from ..tools.convert import convert_file
         from ..tools.deck_checks import check_file
@@ -183,22 +192,16 @@ def deck(
         files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
         print("\n".join([*notes, *check_file(files[0])]), file=sys.stderr)
         raise answer({"files": files}, map(str, files), as_json)
-    if file.suffix == ".j2":
-        if case is None:
-            raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
-        refuse_options(file, "the deck of an own template has the law of its case", law=law, reasons=reasons)
-        if engine != DEFAULT_ENGINE:
-            raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
+    if kind == "own":
         from ..tools.own_decks import settings
         from ..tools.own_decks import write as fill
 
+        if case is None:
+            raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
         files = fill(file, case, settings(given or []), out, force=force)
         raise answer({"files": files}, map(str, files), as_json)
-    refuse_options(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
         refuse_options(file, "a scene has its own law", law=law)
-    if len(law or []) > 1:
-        raise CaseError("--law: a deck has one law; write one deck for each")
     from ..api import deck as write  # unwrapped, its errors name options
     from ..base.rendering import with_reasons
 

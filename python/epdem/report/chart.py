@@ -10,7 +10,6 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -151,68 +150,62 @@ VARIABLES = {"#000000": "ink", "#0072b2": "blue", "#8c564b": "brown"}  # of a pa
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-class Drawing:
-    """A chart and its figure, which is drawn and laid out once, when it is first needed."""
+def laid_out(chart: Chart) -> "Figure":
+    """The figure of a chart, whose places no longer change."""
+    from matplotlib import rc_context
 
-    def __init__(self, chart: Chart) -> None:
-        self.chart = chart
-
-    @cached_property
-    def figure(self) -> "Figure":
-        """The figure of matplotlib, whose places no longer change."""
-        from matplotlib import rc_context
-
-        with rc_context(STYLE):  # type: ignore[arg-type]
-            figure = draw(self.chart)
-            if engine := figure.get_layout_engine():
-                engine.execute(figure)
-            figure.set_layout_engine("none")
-        return figure
-
-    def save(self, folder: Path, formats: Sequence[str], *, data: bool = True) -> list[Path]:
-        """A file of each of `formats` in `folder`, and the `data` as CSV; their paths."""
-        from matplotlib import rc_context
-
-        paths = [folder / f"{self.chart.name}.{kind}" for kind in formats]
-        for kind, path in zip(formats, paths, strict=True):
-            with rc_context(STYLE), atomic(path) as temporary:  # type: ignore[arg-type]
-                self.figure.savefig(temporary, dpi=DPI, format=kind, metadata=BARE_DATE[kind])
-        return paths + (write_texts(folder, {f"{self.chart.name}.csv": self.chart.csv()}) if data else [])
-
-    def svg(self) -> str:
-        """The chart without its title as an element `svg` of a page.
-
-        Black and PALETTE's dark colours are CSS variables of the page.
-        """
-        from matplotlib import rc_context
-        from matplotlib.transforms import Bbox
-
-        figure, text = self.figure, io.StringIO()
-        width, height = figure.get_size_inches()
-        titles = [title.get_window_extent().y0 / figure.dpi for title in figure.texts]
-        below = Bbox([[0.0, 0.0], [width, min([height, *titles])]])
-        with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
-            for title in figure.texts:
-                title.set_visible(False)
-            figure.savefig(text, format="svg", transparent=True, bbox_inches=below, metadata={"Date": None})
-            for title in figure.texts:
-                title.set_visible(True)
-        drawn = text.getvalue()
-        drawn = re.sub(
-            r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
-        )
-        drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn.rstrip())  # one page has several drawings
-        for colour, variable in VARIABLES.items():
-            drawn = drawn.replace(colour, f"var(--{variable})")
-        return drawn
+    with rc_context(STYLE):  # type: ignore[arg-type]
+        figure = draw(chart)
+        if engine := figure.get_layout_engine():
+            engine.execute(figure)
+        figure.set_layout_engine("none")
+    return figure
 
 
-def save(chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True) -> list[Path]:
+def save(
+    chart: Chart,
+    folder: Path,
+    formats: Sequence[str] = ("png",),
+    *,
+    data: bool = True,
+    figure: "Figure | None" = None,
+) -> list[Path]:
     """Draw a chart into `folder`, a file of each of `formats`, and write its `data` as CSV; their paths.
 
-    The caller keeps the folder (`claim`).
+    The caller keeps the folder (`claim`). figure: of the chart, if it is drawn already.
     """
-    return Drawing(chart).save(folder, formats, data=data)
+    from matplotlib import rc_context
+
+    figure, paths = figure or laid_out(chart), [folder / f"{chart.name}.{kind}" for kind in formats]
+    for kind, path in zip(formats, paths, strict=True):
+        with rc_context(STYLE), atomic(path) as temporary:  # type: ignore[arg-type]
+            figure.savefig(temporary, dpi=DPI, format=kind, metadata=BARE_DATE[kind])
+    return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
+
+
+def svg(figure: "Figure") -> str:
+    """The figure of a chart without its title as an element `svg` of a page.
+
+    Black and PALETTE's dark colours are CSS variables of the page.
+    """
+    from matplotlib import rc_context
+    from matplotlib.transforms import Bbox
+
+    text, (width, height) = io.StringIO(), figure.get_size_inches()
+    titles = [title.get_window_extent().y0 / figure.dpi for title in figure.texts]
+    below = Bbox([[0.0, 0.0], [width, min([height, *titles])]])
+    for title in figure.texts:
+        title.set_visible(False)
+    with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
+        figure.savefig(text, format="svg", transparent=True, bbox_inches=below, metadata={"Date": None})
+    drawn = text.getvalue()
+    drawn = re.sub(
+        r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
+    )
+    drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn.rstrip())  # one page has several drawings
+    for colour, variable in VARIABLES.items():
+        drawn = drawn.replace(colour, f"var(--{variable})")
+    return drawn
 
 
 def draw(chart: Chart) -> "Figure":

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 from ..base import readable
 from ..base.files import write_text
 from ..base.terminal import cell, digits_of, heads
-from .chart import Chart, Drawing
+from .chart import Chart, laid_out, save, svg
 
 if TYPE_CHECKING:  # slow to import
     import pandas as pd
@@ -115,13 +115,14 @@ def render(page: Page, folder: Path = Path(), formats: Sequence[str] = ()) -> st
     """The page as HTML; a file of each of `formats` of its charts goes into `folder`."""
     from ..base import rendering  # slow to import
 
-    def svg(chart: Chart) -> str:
-        drawing = Drawing(chart.readable())
+    def drawn(chart: Chart) -> str:
+        chart = chart.readable()
+        figure = laid_out(chart)
         if formats and chart.file:
-            drawing.save(folder, formats)
-        return drawing.svg()
+            save(chart, folder, formats, figure=figure)
+        return svg(figure)
 
-    return rendering.render("report/page.html.j2", page=page, svg=svg)
+    return rendering.render("report/page.html.j2", page=page, svg=drawn)
 
 
 def write(path: Path, page: Page, formats: Sequence[str] = ()) -> Path:

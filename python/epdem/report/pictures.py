@@ -137,26 +137,22 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> str:
 
     A wall that a force drives is left out: no table holds its position.
     """
+    from matplotlib.cm import ScalarMappable
+
     last = coloured(last_frame(spheres))
     x, radius, values = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), last[p.output.color].to_numpy()
     walls = _walls(p, at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles), p.phases[-1])
-    title, label = p.case.case.title, str(Axis(p.output.color, units(last).get(p.output.color, "")))
+    label = str(Axis(p.output.color, units(last).get(p.output.color, "")))
     time = float(p.time_at(last["step"].to_numpy()[:1])[0])
-    _save(_bed(title, x, radius, values, label, walls), path)
-    return f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
-
-
-def _bed(title: str, x: FloatArray, radius: FloatArray, values: FloatArray, label: str, walls: Walls) -> Any:
-    """The figure of the bed."""
-    from matplotlib.cm import ScalarMappable
-
-    fig, axis = _frame(title, np.concatenate([x - radius[:, None], x + radius[:, None]]), beside=BAR)
+    corners = np.concatenate([x - radius[:, None], x + radius[:, None]])
+    fig, axis = _frame(p.case.case.title, corners, beside=BAR)
     _draw_walls(axis, walls, front=False)
     shown = ScalarMappable(cmap="viridis")
     _draw_spheres(axis, x, radius, shown.to_rgba(values)[:, :3])
     _draw_walls(axis, walls, front=True)
     fig.colorbar(shown, ax=axis, label=label, shrink=0.8)
-    return fig
+    _save(fig, path)
+    return f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
 
 
 def before(p: ScenePlan, path: Path) -> int:

@@ -3,14 +3,12 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
 from ..base.readable import in_words
 from ..jobs.stage import Tables
-from ..scenes.judge.measures import PRESS_FIGURES
 from ..scenes.plan.plan import ScenePlan
 from ..scenes.tables import stages
 from .chart import GREY, INK, PALETTE, Axis, Panel, Series
@@ -25,24 +23,21 @@ SLICES = 8  # of the bed, at most
 def _curve(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """time, pressure, height and relative density of the rows, in their middle, and of the ends of phases."""
     rows, names = tables["rows"], ["time", "pressure", "height", "relative_density"]
-    assert p.scene.stages is not None
-    middle = p.time_at((rows["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
-    rows = rows.assign(time=middle, pressure=rows[p.scene.stages.pressure])
+    rows = rows.assign(time=p.middles(rows), pressure=rows[p.stages.pressure])
     return pd.concat([rows[names], tables["stages"][names]]).sort_values("time", kind="stable", ignore_index=True)
 
 
 def force(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Force on the punch over the way by which the plates approach, and the ends of the stages."""
-    declared, curve, ends = p.scene.stages, _curve(p, tables), tables["stages"]
-    assert declared is not None
-    start = float(stages.heights(p, declared, np.zeros(1))[0])
+    curve, ends, area = _curve(p, tables), tables["stages"], p.stages.area
+    start = float(stages.heights(p, np.zeros(1))[0])
     borne = curve["pressure"] > LOWEST * curve["pressure"].max()
     curve = curve.iloc[max(0, int(borne.to_numpy().argmax()) - 1) :]
-    way, load = start - curve["height"].to_numpy(), declared.area * curve["pressure"].to_numpy()
+    way, load = start - curve["height"].to_numpy(), area * curve["pressure"].to_numpy()
     series = [Series("punch", way, load, GREY)]
     for k, stage in enumerate(ends[ends["asked"].notna()].to_dict("records")):
         named = f"{stage['phase']}, {in_words(stage['reached'], 'Pa', 3)}"
-        at, load = start - stage["height"], declared.area * stage["reached"]
+        at, load = start - stage["height"], area * stage["reached"]
         series.append(Series(named, [at], [load], k % len(PALETTE), None, k))
     return [Panel(Axis("displacement", "m"), Axis("force on the punch", "N"), series)]
 
@@ -124,12 +119,10 @@ def springback(p: ScenePlan, tables: Tables) -> list[Panel]:
 
 def sides(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Height over the wall against the punch, and the pressure on the sides there at the end of each loading."""
-    declared = p.scene.stages
-    assert declared is not None
-    if not declared.sides or "contacts" not in tables:
+    if not p.stages.sides or "contacts" not in tables:
         return []
-    loads = stages.normal_forces(tables["contacts"], declared)
-    axis, start = stages.against(p, declared, p.time_at(loads["step"].to_numpy()))
+    loads = stages.normal_forces(p, tables["contacts"])
+    axis, start = stages.against(p, p.time_at(loads["step"].to_numpy()))
     places = tables["particles"].set_index(["step", "id"])["xyz"[axis]]
     above = np.abs(places.reindex(pd.MultiIndex.from_frame(loads[["step", "i"]])).to_numpy() - start)
     series: list[Series] = []
@@ -137,19 +130,10 @@ def sides(p: ScenePlan, tables: Tables) -> list[Panel]:
         there, height = (loads["step"] == stage["step"]).to_numpy(), stage["height"]
         slices = max(1, min(SLICES, math.floor(height / (2.0 * p.largest))))
         load, edges = np.histogram(above[there], slices, (0.0, height), weights=loads["load"][there])
-        pressure, colour = np.repeat(load / (declared.perimeter * height / slices), 2), len(series) % len(PALETTE)
+        pressure, colour = np.repeat(load / (p.stages.perimeter * height / slices), 2), len(series) % len(PALETTE)
         series.append(Series(stage["phase"], pressure, np.repeat(edges, 2)[1:-1], colour))
-    return (
-        [
-            Panel(
-                Axis("normal pressure on the sides", "Pa", low=0.0),
-                Axis("height over the lower plate", "m", low=0.0),
-                series,
-            )
-        ]
-        if series
-        else []
-    )
+    axes = Axis("normal pressure on the sides", "Pa", low=0.0), Axis("height over the lower plate", "m", low=0.0)
+    return [Panel(*axes, series)] if series else []
 
 
 def conductance(p: ScenePlan, tables: Tables) -> list[Panel]:
@@ -164,48 +148,34 @@ def conductance(p: ScenePlan, tables: Tables) -> list[Panel]:
     return [Panel(PRESSURE, Axis("conductance", "S"), series)]
 
 
-@dataclass(frozen=True)
-class Figure:
-    """A figure of a press: heading, caption, and its panel, or none where the tables lack the data."""
-
-    heading: str
-    caption: str
-    panels: Callable[[ScenePlan, Tables], list[Panel]]
-
-
 ENDS = f"the ends of loading below a relative density of {stages.FITTED}."
-FIGURES = dict(
-    zip(
-        PRESS_FIGURES,
-        (
-            Figure(
-                "Force over displacement",
-                "Force on the punch over the way by which the plates have approached; markers: ends of the stages.",
-                force,
-            ),
-            Figure(
-                "Density over pressure",
-                "Relative density over the pressure on the punch; circles: ends of the phases.",
-                densification,
-            ),
-            Figure("Heckel's line", f"The largest pressure so far, and Heckel's line through {ENDS}", heckel),
-            Figure("Kawakita's line", f"C: reduction of the volume. Kawakita's line goes through {ENDS}", kawakita),
-            Figure(
-                "Springback",
-                "Axial strain since the end of loading over the pressure that is left on the punch.",
-                springback,
-            ),
-            Figure(
-                "Pressure on the sides by height",
-                "Normal force on the sides over their area, in slices of the bed, at the end of each loading.",
-                sides,
-            ),
-            Figure(
-                "Conductance over pressure",
-                "Conductance between punch and floor over the pressure on the punch, at the ends of the phases.",
-                conductance,
-            ),
-        ),
-        strict=True,
-    )
-)
+# name of the key figure: heading, caption, and its panel, or none where the tables lack the data
+FIGURES: dict[str, tuple[str, str, Callable[[ScenePlan, Tables], list[Panel]]]] = {
+    "punch_force": (
+        "Force over displacement",
+        "Force on the punch over the way by which the plates have approached; markers: ends of the stages.",
+        force,
+    ),
+    "densification": (
+        "Density over pressure",
+        "Relative density over the pressure on the punch; circles: ends of the phases.",
+        densification,
+    ),
+    "heckel": ("Heckel's line", f"The largest pressure so far, and Heckel's line through {ENDS}", heckel),
+    "kawakita": ("Kawakita's line", f"C: reduction of the volume. Kawakita's line goes through {ENDS}", kawakita),
+    "springback": (
+        "Springback",
+        "Axial strain since the end of loading over the pressure that is left on the punch.",
+        springback,
+    ),
+    "side_pressure": (
+        "Pressure on the sides by height",
+        "Normal force on the sides over their area, in slices of the bed, at the end of each loading.",
+        sides,
+    ),
+    "conductance": (
+        "Conductance over pressure",
+        "Conductance between punch and floor over the pressure on the punch, at the ends of the phases.",
+        conductance,
+    ),
+}

@@ -21,16 +21,8 @@ from .page import Picture
 
 TIME = Axis("time", "s")
 BINS = 30
-COLOURS = {
-    "kinetic": 0,
-    "rotation": INK,
-    "elastic": 2,
-    "plastic": 1,
-    "friction": 4,
-    "springs": 3,
-    "lost_spheres_energy": 6,
-}
-COLOURS["adhesion"] = 5
+COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3}
+COLOURS |= {"lost_spheres_energy": 6, "adhesion": 5}
 COLUMNS = 3  # of small panels
 
 
@@ -178,7 +170,7 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     a curve for each of its phases, both along the first of its motions."""
     rows, ends = tables["rows"], [0, *(phase.end for phase in p.phases)]
     step = rows["step"].to_numpy()
-    middle, found = p.time_at(step - 0.5 * p.every), []
+    middle, found = p.middles(rows), []
     named = {row.wall: row for row in p.scene.row if row.force and not row.area}
     for name in dict.fromkeys([*p.loads, *named]):
         velocities = [phase.moves[name].constant_velocity for phase in p.phases if name in phase.moves]
@@ -226,7 +218,7 @@ def key(p: ScenePlan, tables: Tables) -> list[Chart]:
         said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in shared))
         found.append(Chart("key", title, f"{said}.", shared, heading=f"Key figure: {said}"))
     for name in (name for name in p.scene.key_figure if name in PRESS_FIGURES):
-        figure = press.FIGURES[name]
-        if drawn := figure.panels(p, tables):
-            found.append(Chart(name if found else "key", title, figure.caption, drawn, heading=figure.heading))
+        heading, caption, panels_of = press.FIGURES[name]
+        if drawn := panels_of(p, tables):
+            found.append(Chart(name if found else "key", title, caption, drawn, heading=heading))
     return found

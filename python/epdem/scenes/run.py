@@ -26,11 +26,6 @@ from .tables import network, results, stages
 Progress = Callable[[int, int], None]  # (step, steps of the run)
 
 
-def _facts(p: ScenePlan) -> object:
-    """Names in the tables that the engine's files may lack."""
-    return [wall.name for wall in p.scene.wall], [(phase.name, phase.end) for phase in p.phases]
-
-
 def _stored(folder: Path, key: str) -> results.SceneResults | None:
     """The results in a folder if they belong to these inputs. Raises CaseError for a damaged file."""
     path = folder / "results.h5"
@@ -80,7 +75,9 @@ def run(
         raise EngineError(reason)
     version = engine.version()
     with error_context(place):
-        given = inputs(engine, p, version=version, facts=_facts(p), ranks=ranks)
+        # names in the tables that the engine's files may lack
+        facts = [wall.name for wall in p.scene.wall], [(phase.name, phase.end) for phase in p.phases]
+        given = inputs(engine, p, version=version, facts=facts, ranks=ranks)
     beside = Path(str(place)).parent
     named = {name: (beside / name).read_bytes() for name in sorted(file_names(toml_tables(text, place)))}
     versions = {engine.name: version, "epdem": __version__}

@@ -169,18 +169,17 @@ def beverloo(discharge: Discharge, flow: MassFlow, gravity: float) -> float:
 def flow_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     """A sentence for each mass flow without an expected rate, and for an outlet that lets no sphere through."""
     found = []
-    for flow in (x for x in p.scene.check if isinstance(x, MassFlow) and "particles" in tables):
-        spheres, checked = tables["particles"], tables.get("checks")
-        compared = checked is not None and (checked["key"] == "mass_flow").any()
-        found_flow = discharge(p, flow, spheres)
-        if not compared and found_flow.unknown:
-            found.append(f"the mass flow is not compared with Beverloo's formula: {found_flow.unknown}")
-        if not found_flow.unknown and found_flow.passed > 0.0 and math.isnan(found_flow.rate):
+    for check in (x for x in p.scene.check if isinstance(x, MassFlow) and "particles" in tables):
+        spheres = tables["particles"]
+        flow = discharge(p, check, spheres)
+        if flow.unknown:
+            found.append(f"the mass flow is not compared with Beverloo's formula: {flow.unknown}")
+        elif flow.passed > 0.0 and math.isnan(flow.rate):
             found.append(
-                f"the mass flow has no value: at the end {found_flow.passed:.2g} of the bed has passed the outlet, and "
-                "a rate is that of two frames or more between 0.2 and 0.6; give a longer duration, or look for an arch"
+                f"the mass flow has no value: at the end {flow.passed:.2g} of the bed has passed the outlet, and a "
+                "rate is that of two frames or more between 0.2 and 0.6; give a longer duration, or look for an arch"
             )
-        if not (last_frame(spheres)["z"] < flow.at).any() and not p.scene.open_boundary:
+        if not (last_frame(spheres)["z"] < check.at).any() and not p.scene.open_boundary:
             found.append(f"no sphere passed the outlet{_bond_number(p)}")
     return found
 

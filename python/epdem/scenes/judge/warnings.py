@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Warnings of a scene before and after its run: probable mistakes and lost spheres, in sentences."""
 
+import itertools
 import math
 from collections.abc import Iterator
 
@@ -45,22 +46,9 @@ FLAT = 1e-3  # of the smallest radius: corners of a horizontal triangle differ b
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    found = (
-        _law(p)
-        + _yields_at_surface(p)
-        + _cold_losses(p)
-        + _hard_walls(p)
-        + filling.warnings(p.case)
-        + dense_beds(p.beds)
-    )
-    return (
-        found
-        + _slower(p)
-        + unstable_steps(p.case, largest_density(p.scene, p.beds))
-        + _durations(p)
-        + _overlaps(p)
-        + _walls(p)
-    )
+    found = [*_law(p), *_yields_at_surface(p), *_cold_losses(p), *_hard_walls(p), *filling.warnings(p.case)]
+    found += [*dense_beds(p.beds), *_slower(p), *unstable_steps(p.case, largest_density(p.scene, p.beds))]
+    return [*found, *_durations(p), *_overlaps(p), *_walls(p)]
 
 
 def _law(p: ScenePlan) -> list[str]:
@@ -208,26 +196,25 @@ def _overlaps(p: ScenePlan) -> list[str]:
 def _walls(p: ScenePlan) -> list[str]:
     """Regions that a wall runs through and spheres of the start that lie in one, of walls that have not moved yet."""
     moved, found = set[str](), {}
-    table = [(f"sphere {n} of scene.fill and scene.body", s, p.phases[0].name) for n, s in enumerate(p.scene.table, 1)]
+    spheres = [(f"sphere {n} of scene.fill and scene.body", s) for n, s in enumerate(p.scene.table, 1) if not s.frozen]
     for phase in p.phases:
         gates = [w for w in p.scene.gates if w.name in phase.gates]
         walls = {w.name: sheet(w, p.box) for w in (*p.scene.planes, *gates)}
         walls |= {name: triangles for name, triangles in p.triangles.items() if name not in moved}
         moved |= set(phase.moves)
         fills = [f for f in p.insertions if f.phase == phase.name]
-        spheres = [(place, s) for place, s, begin in table if begin == phase.name and not s.frozen]
         places, radii = np.array([s.place for _, s in spheres]), np.array([s.radius for _, s in spheres])
         for name, triangles in walls.items():
             for f in fills:
                 if crosses(f.region, triangles, OVERLAP * min(particles.radii()[0] for particles in f.particles)):
                     found[f.key, name] = f"{f.key}.region: wall {name} runs through it; move one of them"
             share = depths(triangles, places, radii) / radii if spheres else np.zeros(1)
-            if share.max() > IN_WALL:
-                place = spheres[int(share.argmax())][0]
-                raise CaseError(f"{place}: its centre lies in wall {name}; move it")
             if share.max() > OVERLAP:
                 place = spheres[int(share.argmax())][0]
+                if share.max() > IN_WALL:
+                    raise CaseError(f"{place}: its centre lies in wall {name}; move it")
                 found["", name] = f"{place} lies in wall {name} by {share.max():.0%} of its radius; move it"
+        spheres = []  # they come with the first phase
     return list(found.values())
 
 
@@ -276,34 +263,14 @@ def lost_spheres(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     return [f"{said}; {ADVICE}"]
 
 
-def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
+def passed_walls(p: ScenePlan, tables: Tables) -> list[str]:
     """A sentence for each plane of all phases, and for each wall with horizontal triangles whose way is known, through
-    which spheres have passed: how many, and the largest overlap.
-
-    A sphere that is missing in the last frame has passed if its motion until the next frame carries it out of the room
-    through the wall alone, or if its surface was within a radius of the wall and its motion leaves it in the room: a
-    load between two frames has pressed it through.
-    """
+    which spheres have passed: how many, and the largest overlap."""
     if not p.frames:
         return []
-    spheres, found, many = tables["particles"], [], dict[str, int]()
-    first, last = (spheres.drop_duplicates("id", keep=keep).set_index("id") for keep in ("first", "last"))
-    seconds = (last["step"] < p.frame_steps(p.frames)[-1]) * p.frames * p.time_step
-    ends = last[[*"xyz"]].to_numpy() + seconds.to_numpy()[:, None] * last[["vx", "vy", "vz"]].to_numpy()
-    limits = np.array(p.scene.room.limits).reshape(3, 2)
-    gone = seconds.to_numpy() > 0
-    outside = ((ends < limits[:, 0]) | (ends > limits[:, 1])) & gone[:, None]
-    for wall in p.scene.planes:
-        k = "xyz".index(wall.axis)
-        beyond = (first.loc[last.index, wall.axis].to_numpy() - wall.at) * (ends[:, k] - wall.at) < 0
-        pressed = gone & ((last[wall.axis] - wall.at).abs() < 2 * last["radius"]).to_numpy() & ~outside.any(axis=1)
-        many[wall.name] = int(((beyond & ~np.delete(outside, k, axis=1).any(axis=1)) | pressed).sum())
-    there = gone & ~outside[:, :2].any(axis=1)
-    many |= _passed_triangles(p, spheres, last[there].assign(ends=list(ends[there]), inside=~outside[there, 2]))
-    for name, passed in many.items():
-        if not passed:
-            continue
-        said = f"{passed} of {len(last)} spheres have passed through wall {name}"
+    spheres, found = tables["particles"], []
+    for name, passed in ((name, ids) for name, ids in _passed(p, spheres).items() if ids):
+        said = f"{len(passed)} of {spheres['id'].nunique()} spheres have passed through wall {name}"
         contacts = tables.get("contacts", pd.DataFrame(columns=["wall"]))
         if len(contacts := contacts[contacts["wall"] == name]):
             share = contacts["delta_max"].to_numpy() / bodies(p, contacts, spheres)[0]["radius"].to_numpy()
@@ -315,51 +282,54 @@ def passed_walls(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     return found
 
 
-def _levels(p: ScenePlan, steps: list[int]) -> Iterator[tuple[str, FloatArray, list[float]]]:
-    """(wall, its horizontal triangles of one height, their height at each step) of walls that rest or move up and down
-    in a known way; not the punch of a press, which has a sentence."""
+def _passed(p: ScenePlan, spheres: pd.DataFrame) -> dict[str, set[int]]:
+    """The spheres that are on another side of a wall than a frame before, by wall.
+
+    The motion of a sphere that the next frame lacks goes on until then. Where it leaves the sphere in the room although
+    its surface was within a radius of the wall, a load between two frames has pressed the sphere through.
+    """
+    steps = p.frame_steps(p.frames)
+    frames = [spheres[spheres["step"] == step].set_index("id") for step in steps]
+    limits = np.array(p.scene.room.limits).reshape(3, 2)
+    surfaces, passed = [*_surfaces(p, steps)], dict[str, set[int]]()
+    for n, (now, later) in enumerate(itertools.pairwise(frames)):
+        gone = ~now.index.isin(later.index)
+        begin, velocity = now[[*"xyz"]].to_numpy(), now[["vx", "vy", "vz"]].to_numpy()
+        end = begin + p.frames * p.time_step * velocity
+        end[~gone] = later.loc[now.index[~gone], [*"xyz"]]
+        left = gone & ((end >= limits[:, 0]) & (end <= limits[:, 1])).all(axis=1)
+        for name, axis, triangles, levels in surfaces:
+            before, after = begin[:, axis] - levels[n], end[:, axis] - levels[n + 1]
+            through = (before * after < 0) | (left & (np.abs(before) < 2 * now["radius"].to_numpy()))
+            for place in (begin, end):
+                through[through] = _within(np.delete(triangles, axis, 2), np.delete(place[through], axis, 1))
+            passed.setdefault(name, set()).update(now.index[through])
+    return passed
+
+
+def _surfaces(p: ScenePlan, steps: list[int]) -> Iterator[tuple[str, int, FloatArray, list[float]]]:
+    """(wall, axis across it, its triangles, their place along the axis at each step) of the planes of all phases, and
+    of the horizontal triangles of one height of walls that rest or move up and down in a known way; not of the punch of
+    a press, which has a sentence."""
+    for plane in p.scene.planes:
+        yield plane.name, "xyz".index(plane.axis), sheet(plane, p.box), [plane.at] * len(steps)
     moves = [entry for phase in p.phases for entry in phase.moves.items()]
     aside = {name for name, move in moves if move.press or move.rotation or move.along[0] or move.along[1]}
     aside |= {p.scene.stages.wall} if p.scene.stages else set()
     motions, flat = [p.motions_until(step) for step in steps], FLAT * p.smallest
-    for name in p.triangles.keys() - aside:
+    for name in (name for name in p.triangles if name not in aside):
         corners = p.triangles[name]
         horizontal = corners[np.ptp(corners[..., 2], axis=1) < flat]
         levels = np.round(horizontal[:, 0, 2] / flat)
         for level in np.unique(levels):
             one = horizontal[levels == level]
-            yield name, one, [float(at_end(moves, {name: one[:1]})[name][0, 0, 2]) for moves in motions]
-
-
-def _passed_triangles(p: ScenePlan, spheres: pd.DataFrame, gone: pd.DataFrame) -> dict[str, int]:
-    """How many spheres are on another side of horizontal triangles than a frame before, by wall.
-
-    gone: the last row of each sphere that the next frame lacks, with its place by then, `ends` [m], and whether it is
-    in the room there, `inside`.
-    """
-    steps = p.frame_steps(p.frames)
-    frames = [spheres[spheres["step"] == step].set_index("id") for step in steps]
-    passed: dict[str, set[int]] = {}
-    for name, triangles, heights in _levels(p, steps):
-        for n, (now, later) in enumerate(zip(frames[:-1], frames[1:], strict=True)):
-            missing = gone[gone["step"] == steps[n]]
-            stay = now.index.intersection(later.index)
-            begin = pd.concat([now.loc[stay], missing])
-            end = np.concatenate([later.loc[stay, [*"xyz"]], np.reshape([*missing["ends"]], (-1, 3))])
-            above = begin["z"].to_numpy() - heights[n]
-            through = above * (end[:, 2] - heights[n + 1]) < 0
-            near = np.abs(above[len(stay) :]) < 2 * missing["radius"].to_numpy()
-            through[len(stay) :] |= near & missing["inside"].to_numpy(bool)
-            begin, end = begin[through], end[through]
-            both = _within(triangles, begin[[*"xyz"]].to_numpy()) & _within(triangles, end)
-            passed.setdefault(name, set()).update(begin.index[both])
-    return {name: len(ids) for name, ids in passed.items()}
+            yield name, 2, one, [float(at_end(moves, {name: one[:1]})[name][0, 0, 2]) for moves in motions]
 
 
 def _within(triangles: FloatArray, places: FloatArray) -> npt.NDArray[np.bool_]:
-    """Which places, shape (n, 3), are above or below one of the triangles, shape (m, 3 corners, 3)."""
-    sides = np.roll(triangles, -1, axis=1)[None, ..., :2] - triangles[None, ..., :2]
-    arms = places[:, None, None, :2] - triangles[None, ..., :2]
+    """Which places, shape (n, 2), lie in one of the triangles, shape (m, 3 corners, 2)."""
+    sides = (np.roll(triangles, -1, axis=1) - triangles)[None]
+    arms = places[:, None, None] - triangles[None]
     turns = sides[..., 0] * arms[..., 1] - sides[..., 1] * arms[..., 0]
     inside = np.asarray((turns >= 0).all(axis=2) | (turns <= 0).all(axis=2))
     return np.asarray(inside.any(axis=1))
@@ -368,8 +338,6 @@ def _within(triangles: FloatArray, places: FloatArray) -> npt.NDArray[np.bool_]:
 def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
     """A sentence for a stage beside its pressure, for a bed too dense for the laws, for a press that is too fast for an
     even stress while it loads, for an ejection, and for spheres that have passed the punch."""
-    declared = p.scene.stages
-    assert declared is not None
     table, found = tables["stages"], []
     numbers = inertial_numbers(p, loaded(p, table))
     found += [
@@ -385,8 +353,8 @@ def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
             "contact law of spheres gives the pressure (docs/press.md); press less"
         )
     if not numbers.empty and numbers.max() > SLOW:
-        name = tables["stages"]["phase"][numbers.idxmax()]
-        speed = next(towards(p, declared, phase) for phase in p.phases if phase.name == name)
+        name = table["phase"][numbers.idxmax()]
+        speed = next(towards(p, phase) for phase in p.phases if phase.name == name)
         found.append(
             f"phase {name}: the inertial number v/h d sqrt(rho/P) is {numbers.max():.2g}, above {SLOW:g}, so that "
             f"inertia bears a part of the pressure; {speed * SLOW / numbers.max():.2g} m/s is slow enough"
@@ -396,11 +364,11 @@ def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
         "which is 2.1 to 3.2 times that of finite elements at E/Y = 120, 1.3 to 1.7 times at 30, and more below a "
         "relative density of 0.8 (docs/press.md)"
         for phase in p.phases
-        if np.any(phase.velocity(declared.against)) and towards(p, declared, phase) == 0.0
+        if np.any(phase.velocity(p.stages.against)) and towards(p, phase) == 0.0
     ]
     if "particles" in tables and (behind := _behind(p, tables)):
         found.append(
-            f"{behind} spheres have passed wall {declared.wall}, and pressures and densities are wrong: the force of a "
+            f"{behind} spheres have passed wall {p.stages.wall}, and pressures and densities are wrong: the force of a "
             "contact with a hard wall grows up to an overlap of 0.9 radii; give the walls the material of the spheres, "
             "lower pressures, or smaller spheres"
         )
@@ -409,12 +377,11 @@ def press_warnings(p: ScenePlan, tables: Tables) -> list[str]:
 
 def _gains_energy(p: ScenePlan, tables: Tables) -> list[str]:
     """A sentence for a bed that gains energy: by its balance, or because it moves faster than a punch can drive it."""
-    declared, checks, rows = p.scene.stages, tables["checks"], tables["rows"]
-    assert declared is not None
+    checks, rows = tables["checks"], tables["rows"]
     mass, fast = volume(p, tables) * max(p.case.materials[part.material].density for part in p.scene.filled), False
     for phase, times in zip(p.phases, p.phase_table.to_dict("records"), strict=True):
         during = rows[(rows["step"] > times["begin"]) & (rows["step"] <= times["end"])]
-        speed = max(0.0, towards(p, declared, phase))
+        speed = max(0.0, towards(p, phase))
         fast |= speed > 0.0 and bool((during["kinetic_energy"] > 0.5 * mass * (FAST * speed) ** 2).any())
     if not fast and checks[checks["key"].isin(["energy_residual", "energy_gained"])]["passed"].all():
         return []
@@ -428,9 +395,7 @@ def _gains_energy(p: ScenePlan, tables: Tables) -> list[str]:
 def _behind(p: ScenePlan, tables: Tables) -> int:
     """Largest number of spheres in a frame at the end of a phase whose centres are behind the punch."""
     stages, spheres = tables["stages"], tables["particles"]
-    declared = p.scene.stages
-    assert declared is not None
-    axis, at = against(p, declared, p.time_at(stages["step"].to_numpy()))
+    axis, at = against(p, p.time_at(stages["step"].to_numpy()))
     height, begin = (spheres["step"].map(pd.Series(x, stages["step"])) for x in (stages["height"].to_numpy(), at))
     counts = (np.abs(spheres["xyz"[axis]] - begin) > height).groupby(spheres["step"]).sum()
     return int(counts.max())

@@ -127,12 +127,8 @@ def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...
                 against = stages.against
                 if sign * (plate_at[against] - begin) < 0:
                     continue
-            stops = (
-                [plate_at[against]]
-                if against
-                else [x for x in (*planes, *_floors(scene, wall)) if sign * (x - begin) > 0]
-            )
-            ends = stops if against else [*stops, scene.room.limits[2 * axis + (sign > 0)]]
+            beyond = [x for x in (*planes, *_floors(scene, wall)) if sign * (x - begin) > 0]
+            ends = [plate_at[against]] if against else [*beyond, scene.room.limits[2 * axis + (sign > 0)]]
             stop = min(ends, key=lambda x: sign * x)
             low, high = min(begin, stop), max(begin, stop)
             coming = {later.name for later in scene.phase[n + 1 :]}

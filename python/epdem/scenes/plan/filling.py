@@ -41,7 +41,7 @@ class Insertion:
 
 def size_weights(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
     """(material, radius [m], weight) of each size: spheres drawn with these weights have the shares of the mass."""
-    return [(material, radius, share / mass) for _, material, radius, mass, share in _classes(case, parts)]
+    return [(size.material, size.radius, size.share / size.mass) for size in _sizes(case, parts)]
 
 
 def mean_volume(case: SceneCase, fill: Insertion) -> float:
@@ -75,7 +75,8 @@ def refuse_too_many(case: SceneCase, fills: Iterable[Insertion]) -> None:
 
 
 class Size(NamedTuple):
-    """Spheres of one size: number of the component, radius [m], mass of a sphere [kg], requested and placed number.
+    """Spheres of one size: number of the component, radius [m], mass of a sphere [kg], share of the mass of the fill,
+    requested and placed number.
 
     placed: None where the engine draws each sphere at random.
     """
@@ -84,7 +85,8 @@ class Size(NamedTuple):
     material: str
     radius: float
     mass: float
-    requested: float
+    share: float
+    requested: float = 0.0
     placed: int | None = None
 
     @property
@@ -103,10 +105,10 @@ def _round_to_sum(exact: list[float]) -> list[int]:
     return result
 
 
-def _classes(case: SceneCase, particles: list[Particles]) -> list[tuple[int, str, float, float, float]]:
-    """(component, material, radius [m], mass of a sphere [kg], share of the mass of the fill) of each size."""
+def _sizes(case: SceneCase, particles: list[Particles]) -> list[Size]:
+    """The sizes of a fill, before their numbers are known."""
     return [
-        (n, p.material, r, case.materials[p.material].density * 4.0 / 3.0 * math.pi * r**3, share)
+        Size(n, p.material, r, case.materials[p.material].density * 4.0 / 3.0 * math.pi * r**3, share)
         for n, p in enumerate(particles)
         for r, share in p.sizes()
     ]
@@ -114,30 +116,30 @@ def _classes(case: SceneCase, particles: list[Particles]) -> list[tuple[int, str
 
 def count_sizes(case: SceneCase, f: Fill) -> list[Size]:
     """The sizes of a fill by count, mass or fraction, in whole numbers."""
-    classes = _classes(case, f.particles)
+    sizes = _sizes(case, f.particles)
     if f.count is not None:
-        total = f.count / sum(share / mass for *_, mass, share in classes)
+        total = f.count / sum(x.share / x.mass for x in sizes)
     elif f.mass is not None:
         total = f.mass
     else:
         assert f.fraction is not None
-        total = f.fraction * f.region.volume / sum(share / case.materials[m].density for _, m, *_, share in classes)
-    requested = [total * share / mass for *_, mass, share in classes]
-    return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _round_to_sum(requested), strict=True)]
+        total = f.fraction * f.region.volume / sum(x.share / case.materials[x.material].density for x in sizes)
+    requested = [total * x.share / x.mass for x in sizes]
+    numbers = zip(sizes, requested, _round_to_sum(requested), strict=True)
+    return [size._replace(requested=x, placed=n) for size, x, n in numbers]
 
 
 def _insertion(scene: Parts, f: Fill, key: str, count: int) -> Insertion:
-    vx, vy, vz = f.velocity
-    phase = next(p for p in scene.phase if f.phase in (None, p.name))
+    phase, (vx, vy, vz) = next(p for p in scene.phase if f.phase in (None, p.name)), f.velocity
+    velocity, T = (vx, vy, vz), f.temperature
     if f.rate is None:
-        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), temperature=f.temperature)
+        return Insertion(f.particles, count, f.region, key, phase.name, velocity, temperature=T)
     down, depth = -vz, f.region.z[1] - f.region.z[0]
     if not (down > 0 or scene.gravity):
         raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")
     period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
     if count / f.rate > phase.duration:
         raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
-    velocity, T = (vx, vy, vz), f.temperature
     return Insertion(f.particles, count, f.region, key, phase.name, velocity, f.rate, period, temperature=T)
 
 

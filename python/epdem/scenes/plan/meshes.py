@@ -132,24 +132,15 @@ def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
     mesh.merge_vertices(digits_vertex=MERGED)
     edges, corners = mesh.edges, size * mesh.vertices
     undirected, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
-    _, repeated = np.unique(edges, axis=0, return_counts=True)
-
-    def middle(edge: np.ndarray) -> str:
-        return _at(corners[edge].mean(axis=0))
-
-    if (counts > 2).any():
-        n, edge = int((counts > 2).sum()), undirected[counts > 2][0]
-        raise CaseError(f"{place}: {n} edges belong to more than two triangles, one at {middle(edge)}; repair the mesh")
-    if (repeated > 1).any():
-        n = int((repeated > 1).sum())
-        edge = np.unique(edges, axis=0)[repeated > 1][0]
-        raise CaseError(
-            f"{place}: neighbouring triangles are flipped against each other at {n} edges, one at {middle(edge)}; make "
-            "their normals consistent"
-        )
-    if w.closed and (counts == 1).any():
-        n, edge = int((counts == 1).sum()), undirected[counts == 1][0]
-        raise CaseError(f"{place}: open along {n} edges, one at {middle(edge)}; close the mesh, or remove 'closed'")
+    directed, repeated = np.unique(edges, axis=0, return_counts=True)
+    flipped = "neighbouring triangles are flipped against each other"
+    for bad, known, said in (
+        (counts > 2, undirected, "{} edges belong to more than two triangles, one at {}; repair the mesh"),
+        (repeated > 1, directed, f"{flipped} at {{}} edges, one at {{}}; make their normals consistent"),
+        ((counts == 1) & w.closed, undirected, "open along {} edges, one at {}; close the mesh, or remove 'closed'"),
+    ):
+        if bad.any():
+            raise CaseError(f"{place}: {said.format(bad.sum(), _at(corners[known[bad][0]].mean(axis=0)))}")
 
 
 def place_stl(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from ...case.motions import FloatArray, Move, RotateMove
+from ...case.outputs import Stages
 from ...case.parts import Load, Parts
 from ...case.places import Limits
 from ...case.scene import Output, SceneCase
@@ -71,6 +72,12 @@ class ScenePlan:
     def scene(self) -> Parts:
         """The parts, of which a scene of each kind consists."""
         return self.case.parts
+
+    @property
+    def stages(self) -> Stages:
+        """Walls and rows of a press, which alone has them."""
+        assert self.scene.stages is not None
+        return self.scene.stages
 
     @property
     def pressed(self) -> tuple[PressedBed, ...]:
@@ -198,6 +205,10 @@ class ScenePlan:
         ends = np.array([0, *(phase.end for phase in self.phases)])
         lengths = np.diff(ends) * [phase.time_step for phase in self.phases]
         return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
+
+    def middles(self, rows: pd.DataFrame) -> FloatArray:
+        """Times [s] in the middle of each row, to which its mean forces belong."""
+        return self.time_at((rows["step"] - 0.5 * self.every).clip(lower=0).to_numpy())
 
     def lasted(self, times: FloatArray) -> list[FloatArray]:
         """How long [s] the motions of each phase have lasted at times [s]: until its end, or its condition held. Of

@@ -116,10 +116,9 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
 
 def named_rows(p: ScenePlan, table: pd.DataFrame) -> pd.DataFrame:
     """The rows with the columns that the scene names, in place of the forces from which alone they follow."""
-    middle = p.time_at((table["step"] - 0.5 * p.every).clip(lower=0).to_numpy())
     for row in p.scene.row:
         if row.position:
-            table[row.name] = place(p, row.wall, row.axis, middle)
+            table[row.name] = place(p, row.wall, row.axis, p.middles(table))
         elif row.heat_flow:
             table[row.name] = table[f"{row.wall}_heat_flow"]
         else:

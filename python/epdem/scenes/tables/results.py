@@ -180,7 +180,6 @@ class _Blocks:
         self.root, self.frames = root, len(times)
         self.stored: dict[tuple[object, ...], h5py.Dataset] = {}
         self.times = {"Values": times, "PartOffsets": np.arange(len(times)), "NumberOfParts": np.ones(len(times), int)}
-        self.no_cells: h5py.Group | None = None
 
     def _put(self, group: h5py.Group, arrays: dict[str, Any]) -> None:
         for name, data in arrays.items():
@@ -191,11 +190,10 @@ class _Blocks:
             else:
                 group[name] = self.stored[key]
 
-    def _cells(self, block: h5py.Group, kind: str, cells: np.ndarray, shown: np.ndarray) -> h5py.Group:
+    def _cells(self, block: h5py.Group, kind: str, cells: np.ndarray, shown: np.ndarray) -> None:
         group, corners = block.create_group(kind), cells.shape[1]
         self._put(group, {"NumberOfCells": shown, "NumberOfConnectivityIds": shown * corners})
         self._put(group, {"Offsets": np.arange(len(cells) + 1) * corners, "Connectivity": cells.reshape(-1)})
-        return group
 
     def add(
         self, name: str, first: np.ndarray, points: np.ndarray, kind: str, cells: np.ndarray, shown: np.ndarray
@@ -209,15 +207,12 @@ class _Blocks:
         write_attributes(block, {"Index": len(self.root["Assembly"]) - 1})
         place[name] = h5py.SoftLink(block.name)
         self._put(block, {"NumberOfPoints": points})
-        self._cells(block, kind, cells, shown)
-        for other in (k for k in CELLS if k != kind):
-            if self.no_cells is None:
-                self.no_cells = self._cells(block, other, np.empty((0, 1), int), np.zeros(self.frames, int))
-            else:
-                block[other] = self.no_cells
-        steps, none = block.create_group("Steps"), np.zeros((self.frames, len(CELLS)), int)
+        for other in CELLS:
+            none = np.empty((0, 1), int), np.zeros(self.frames, int)
+            self._cells(block, other, *((cells, shown) if other == kind else none))
+        steps, zeros = block.create_group("Steps"), np.zeros((self.frames, len(CELLS)), int)
         write_attributes(steps, {"NSteps": self.frames})
-        self._put(steps, self.times | {"PointOffsets": first, "CellOffsets": none, "ConnectivityIdOffsets": none})
+        self._put(steps, self.times | {"PointOffsets": first, "CellOffsets": zeros, "ConnectivityIdOffsets": zeros})
         return block
 
     def offsets(self, block: h5py.Group, kind: str, first: Any) -> None:
@@ -245,9 +240,6 @@ def _walls(p: ScenePlan, steps: np.ndarray) -> Iterator[tuple[str, list[np.ndarr
 
 def _distinct(frames: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """(points of frames without repetitions, place of each frame in them): a wall at rest is stored once."""
-    kept, first = [frames[0]], [0]
-    for frame in frames[1:]:
-        if not np.array_equal(frame, kept[-1]):
-            kept.append(frame)
-        first.append((len(kept) - 1) * len(frame))
-    return np.concatenate(kept), np.array(first)
+    every = np.array(frames)
+    new = np.append(True, (every[1:] != every[:-1]).any(axis=(1, 2)))
+    return every[new].reshape(-1, 3), (np.cumsum(new) - 1) * every.shape[1]

@@ -7,55 +7,50 @@ import numpy as np
 import pandas as pd
 
 from ...base.readable import in_words
-from ...case.outputs import Stages
-from ...case.walls import PlateWall
+from ...case.walls import PlaneWall, PlateWall
 from ..plan.phases import Phase
 from ..plan.plan import ScenePlan
-from .columns import FORCE, NORMAL, place, work_of_walls
+from .columns import FORCE, NORMAL, last_frame, place, work_of_walls
 
 SLOW = 1e-3  # inertial number below which a bed deforms as if at rest [GDR MiDi 2004, Eur. Phys. J. E 14, 341]
 FITTED = 0.95  # relative density up to which a stage counts for a fit
 Tables = dict[str, pd.DataFrame]
 
 
-def towards(p: ScenePlan, stages: Stages, phase: Phase) -> float:
+def towards(p: ScenePlan, phase: Phase) -> float:
     """Speed [m/s] of the punch towards the wall that it presses against, which may move, too."""
-    axis, at = against(p, stages, np.zeros(1))
-    begin = p.triangles[stages.wall][0, 0, axis]
-    speed = phase.velocity(stages.wall)[axis] - phase.velocity(stages.against)[axis]
+    axis, at = against(p, np.zeros(1))
+    begin = p.triangles[p.stages.wall][0, 0, axis]
+    speed = phase.velocity(p.stages.wall)[axis] - phase.velocity(p.stages.against)[axis]
     return speed * math.copysign(1.0, at[0] - begin)
 
 
-def against(p: ScenePlan, stages: Stages, time: np.ndarray) -> tuple[int, np.ndarray]:
+def against(p: ScenePlan, time: np.ndarray) -> tuple[int, np.ndarray]:
     """Axis of the press and places [m] at times [s] of the wall that the punch presses against."""
-    for w in p.scene.planes:
-        if w.name == stages.against:
-            return "xyz".index(w.axis), np.full(time.shape, w.at)
-    axis = "xyz".index(next(w.axis for w in p.scene.wall if w.name == stages.against and isinstance(w, PlateWall)))
-    return axis, place(p, stages.against, axis, time)
+    wall = next(w for w in p.scene.wall if w.name == p.stages.against)
+    assert isinstance(wall, PlaneWall | PlateWall)
+    axis = "xyz".index(wall.axis)
+    return axis, np.full(time.shape, wall.at) if isinstance(wall, PlaneWall) else place(p, wall.name, axis, time)
 
 
-def heights(p: ScenePlan, stages: Stages, time: np.ndarray) -> np.ndarray:
+def heights(p: ScenePlan, time: np.ndarray) -> np.ndarray:
     """Height [m] of the bed between the punch and the wall that it presses against at times [s]."""
-    axis, at = against(p, stages, time)
-    return np.asarray(np.abs(place(p, stages.wall, axis, time) - at))
+    axis, at = against(p, time)
+    return np.asarray(np.abs(place(p, p.stages.wall, axis, time) - at))
 
 
 def volume(p: ScenePlan, tables: Tables) -> float:
     """Volume of the spheres [m^3], of the last frame; without frames that of the plan."""
     if "particles" in tables and not tables["particles"].empty:
-        spheres = tables["particles"]
-        radius = spheres[spheres["step"] == spheres["step"].max()]["radius"].to_numpy()
+        radius = last_frame(tables["particles"])["radius"].to_numpy()
         return float((4.0 / 3.0 * math.pi * radius**3).sum())
     return next(bed.solid_height * bed.area for bed in p.beds)
 
 
 def with_densities(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     """The rows with height and relative density of the bed in the middle of each row."""
-    stages, rows = p.scene.stages, tables["rows"]
-    assert stages is not None
-    height = heights(p, stages, p.time_at((rows["step"] - 0.5 * p.every).clip(lower=0).to_numpy()))
-    return rows.assign(height=height, relative_density=volume(p, tables) / (stages.area * height))
+    height = heights(p, p.middles(tables["rows"]))
+    return tables["rows"].assign(height=height, relative_density=volume(p, tables) / (p.stages.area * height))
 
 
 def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
@@ -68,10 +63,8 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     frame at the end of the phase, NaN after a release, where the law leaves too much of it. work, plastic, elastic: as
     in the energy balance.
     """
-    stages = p.scene.stages
-    assert stages is not None
-    rows, phases = tables["rows"].set_index("step"), p.phase_table
-    speeds = [towards(p, stages, phase) for phase in p.phases]
+    stages, rows, phases = p.stages, tables["rows"].set_index("step"), p.phase_table
+    speeds = [towards(p, phase) for phase in p.phases]
     first = next((n for n, speed in enumerate(speeds) if speed > 0.0), len(speeds))
     chosen = phases.iloc[first:][phases.iloc[first:]["end"] > phases.iloc[first:]["begin"]]
     ends = chosen["end"].to_numpy(int)
@@ -92,7 +85,7 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     # a bed that was pressed beyond its stage does not get its density back where the punch goes back
     error, beyond = (found[name] / found["asked"] - 1.0 for name in ("reached", "peak"))
     found["error"] = error.where(error.abs() >= beyond, beyond)
-    found["height"] = heights(p, stages, found["time"].to_numpy())
+    found["height"] = heights(p, found["time"].to_numpy())
     found["relative_density"] = volume(p, tables) / (stages.area * found["height"])
     found["porosity"] = 1.0 - found["relative_density"]
     speed = pd.Series([speeds[n] for n in chosen.index])
@@ -100,7 +93,7 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     under_load = speed.where(speed != 0.0).ffill() > 0.0
     found["springback"] = (found["height"] / loaded - 1.0).where(speed < 0.0)
     if stages.sides and "contacts" in tables:
-        loads = normal_forces(tables["contacts"], stages).groupby("step")["load"].sum()
+        loads = normal_forces(p, tables["contacts"]).groupby("step")["load"].sum()
         normal = loads.reindex(ends, fill_value=0.0).to_numpy()
         found["radial_pressure"] = (normal / (stages.perimeter * found["height"])).where(under_load)
         axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
@@ -117,18 +110,15 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
 
 def loaded(p: ScenePlan, stages: pd.DataFrame) -> pd.DataFrame:
     """The rows of the table for phases of loading."""
-    declared = p.scene.stages
-    assert declared is not None
-    names = [phase.name for phase in p.phases if towards(p, declared, phase) > 0.0]
+    names = [phase.name for phase in p.phases if towards(p, phase) > 0.0]
     return stages[stages["phase"].isin(names)]
 
 
 def against_measured(p: ScenePlan, tables: Tables) -> list[str]:
     """One line: the relative density of the scene less the measured one where loading first reaches each pressure."""
-    known, declared = p.case.measured, p.scene.stages
-    if known is None or declared is None:
+    if (known := p.case.measured) is None:  # of a press alone
         return []
-    pressure, density = (tables["rows"][name].to_numpy() for name in (declared.pressure, "relative_density"))
+    pressure, density = (tables["rows"][name].to_numpy() for name in (p.stages.pressure, "relative_density"))
     if not (pressure > 0.0).any():
         return []
     rising = (pressure > 0.0) & (pressure > np.maximum.accumulate(np.append(-math.inf, pressure[:-1])))
@@ -140,18 +130,16 @@ def against_measured(p: ScenePlan, tables: Tables) -> list[str]:
     return [f"relative density less the measured one: {', '.join(found)} ({known.source})"]
 
 
-def normal_forces(contacts: pd.DataFrame, stages: Stages) -> pd.DataFrame:
+def normal_forces(p: ScenePlan, contacts: pd.DataFrame) -> pd.DataFrame:
     """step, i and `load`, the normal force on the sides [N], of each contact with them."""
-    found = contacts[contacts["wall"].isin(stages.sides)]
+    found = contacts[contacts["wall"].isin(p.stages.sides)]
     normal = np.abs((found[FORCE].to_numpy() * found[NORMAL].to_numpy()).sum(axis=1))
     return found[["step", "i"]].assign(load=normal)
 
 
 def inertial_numbers(p: ScenePlan, stages: pd.DataFrame) -> pd.Series:
     """Inertial number v/h d sqrt(rho/P) at the end of each phase in which the punch moves; h, P of that time."""
-    declared = p.scene.stages
-    assert declared is not None
-    speed = {phase.name: abs(towards(p, declared, phase)) for phase in p.phases}
+    speed = {phase.name: abs(towards(p, phase)) for phase in p.phases}
     density = max(p.case.materials[part.material].density for part in p.scene.filled)
     rate = stages["phase"].map(speed) / stages["height"]
     pressure = stages["pressure"].clip(lower=0.0)
