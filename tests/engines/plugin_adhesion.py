@@ -69,12 +69,3 @@ def slope(x):
 EDGE = [*slope(0.02), *slope(-0.02)]
 BASE = [(x, y, -0.01) for x, y in ((0.02, 0.02), (-0.02, 0.02), (-0.02, -0.02), (0.02, -0.02))]
 TIP = [((0.0, 0.0, 0.0), BASE[k - 1], BASE[k]) for k in range(4)]
-
-
-def triangles(corners):
-    """Text of an STL file."""
-    lines = ["solid roof"]
-    for three in corners:
-        lines += ["facet normal 0 0 1", " outer loop", *(f"  vertex {x!r} {y!r} {z!r}" for x, y, z in three)]
-        lines += [" endloop", "endfacet"]
-    return "\n".join([*lines, "endsolid roof", ""])

@@ -210,17 +210,4 @@ def contact(model, *, tangential="history", wall=None, models="", settings=""):
     return text
 
 
-def plate(x=(-0.1, 0.1), y=(-0.1, 0.1), cells=1):
-    """STL text of a rectangular plate at z = 0, `cells` x `cells` rectangles of two triangles."""
-    xs, ys = np.linspace(*x, cells + 1), np.linspace(*y, cells + 1)
-    lines = ["solid plate"]
-    for a, b in zip(xs[:-1], xs[1:], strict=True):
-        for c, d in zip(ys[:-1], ys[1:], strict=True):
-            for corners in (((a, c), (b, c), (b, d)), ((a, c), (b, d), (a, d))):
-                lines += ["facet normal 0 0 1", " outer loop"]
-                lines += [f"  vertex {float(p)!r} {float(q)!r} 0.0" for p, q in corners]
-                lines += [" endloop", "endfacet"]
-    return "\n".join([*lines, "endsolid plate", ""])
-
-
 DUMP = "dump out all custom {every} out.bin id x y z vx vy vz omegax omegay omegaz\n"

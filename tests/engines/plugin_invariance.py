@@ -12,7 +12,8 @@ from dataclasses import replace
 from functools import cache, cached_property, partial
 
 import numpy as np
-from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair, plate
+from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair
+from triangles import plate
 
 CENTRE = 0.09375  # 1.5/16 m: on both sides of a face the coordinates have the same spacing of doubles
 BOX = ((-CENTRE, 3 * CENTRE), (-0.02, 0.12), (-0.01, 0.14))
@@ -253,11 +254,7 @@ class Suite:
         stop = self.deck(wall=wall, body=f"run {MIDDLE}\nwrite_restart ../{name}.restart\n")
         self.outcome(f"{name}-first", stop)
         go_on = self.deck(
-            wall=wall,
-            restart=f"../{name}.restart",
-            style=style,
-            body=f"run {STEPS - MIDDLE}\n",
-            ranks=(ranks, 1, 1),
+            wall=wall, restart=f"../{name}.restart", style=style, body=f"run {STEPS - MIDDLE}\n", ranks=(ranks, 1, 1)
         )
         return self.outcome(name, go_on, ranks=ranks)
 

@@ -188,6 +188,13 @@ NAMED = (
     Scene(rolling="cdt", cohesion="sjkr", types=3, loose=True, settings=("computePlasticWork on",), walls=True),
 )
 
+DENSE = ("computePlasticWork on", "compaction on"), ("viscous on", "compaction on")
+WITH_COMPACTION = (
+    Scene(law="cavity", tangential="ep/partial_slip", types=3, settings=DENSE[0]),
+    Scene(law="cavity", rolling="epsd2", types=3, loose=True, ranks=2, rebuild=True, settings=DENSE[1]),
+    Scene(law="cavity", rolling="cdt", freeze=True, loose=True, walls=True, settings=DENSE[0]),
+)
+
 
 def covering(dimensions=DIMENSIONS, seed=1, tries=60):
     """Few scenes in which every two values of two dimensions meet: each is the best of some random ones."""

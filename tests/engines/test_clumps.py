@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, needs_lammps
 from lammps_decks import run as run_lammps
-from plugin_decks import NU, P_Y, E, contact, good, head, materials, plate
+from plugin_decks import NU, P_Y, E, contact, good, head, materials
+from triangles import plate
 
 from epdem.scenes.plan.meshes import stl_text
 from epdem.theory import pair, restitution

@@ -156,6 +156,39 @@ def test_friction_never_exceeds_its_limit_and_the_normal_force_never_pulls(host,
     assert (sideways > 0.999 * mu * normal)[normal > 0].any() and (sideways < 0.5 * mu * normal)[normal > 0].any()
 
 
+def wandering(depth):
+    """Lines that move each sphere by sums of two waves with phases of its own, in the plane and along the normal."""
+    terms = {"x": (0.4, 1.3, 3.1, 0.7, 5.3), "y": (0.3, 2.1, 2.3, 1.1, 4.9), "z": (0.9, 1.7, 2.7, 2.9, 3.7)}
+    text = "variable t equal step*dt*6.3e4\n"
+    for axis, (size, p, w, q, u) in terms.items():
+        waves = f"sin({w}*v_t+{p}*id)+0.6*sin({u}*v_t+{q}*id)-sin({p}*id)-0.6*sin({q}*id)"
+        slopes = f"{w}*cos({w}*v_t+{p}*id)+0.6*{u}*cos({u}*v_t+{q}*id)"
+        text += f"variable d{axis} atom {size * depth!r}*({waves})\n"
+        text += f"variable v{axis} atom {size * depth * 6.3e4!r}*({slopes})\n"
+    return text + "unfix move\nfix move all move variable v_dx v_dy v_dz v_vx v_vy v_vz\nrun 1200\n"
+
+
+@pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS])
+@pytest.mark.parametrize("tangential", ["partial_slip", "partial_slip_2"])
+@pytest.mark.parametrize("e", [None, 0.5, 0.2])
+@pytest.mark.parametrize("law", ["thornton", "cavity"])
+def test_on_wandering_paths_partial_slip_is_passive_and_never_above_coulombs_limit(law, e, tangential, host, tmp_path):
+    """60 spheres that load, unload, part and slide. Work by the trapezoid rule."""
+    R, mu, depth, dt = 5e-3, 0.3, 2e-6, 1e-8
+    more = {"tangential": tangential, "friction": mu, "restitution": e, "lines": wandering(depth)}
+    found = frames(host, tmp_path, on_plane(law, np.zeros((60, 3)), R=R, dt=dt, steps=1200, **more))
+    v, F, T = found[..., VELOCITY], found[..., 11], found[..., 9:11]
+    length, held = np.hypot(T[..., 0], T[..., 1]), F > 0
+    assert np.all(F >= 0) and not np.any(length[F == 0])
+    ratio = length[held] / (mu * F[held])
+    assert 0.9999 < ratio.max() <= 1 + 1e-12 and (ratio < 0.9).mean() > 0.05  # many stick
+    assert 0.2 < held.mean() < 0.95 and (np.diff(held.astype(int), axis=0) == 1).any()
+    if e is None:
+        work = -np.cumsum(0.5 * (T[1:] + T[:-1]) * v[1:, :, :2], axis=0).sum(axis=-1) * dt
+        scale = (mu * F.max()) ** 2 / (16 * G_STAR * np.sqrt(R * depth))
+        assert work.min() > -1e-9 * scale and work[-1].max() > 0.1 * scale
+
+
 @every_law
 def test_the_tangential_spring_follows_the_contact_radius_on_unloading(host, law, tmp_path):
     """k_t = 8 G* a, and dF/d alpha = 2 E* a on the elastic branch: the two stiffnesses share one radius."""
@@ -249,7 +282,7 @@ def test_forces_of_law_and_cohesion_of_both_contacts_of_a_sphere_add_up(host, la
         kinds=[0, 1],
         plane=0,
         cohesion=(cohesion, density if cohesion != "off" else 0.0),
-        mesh=bool(mesh),
+        floor=mesh or "plane",
     )
     found = frames(host, tmp_path, scene)[..., FORCE]  # of the start, which LIGGGHTS's loop computes, and of a step
     E = [pair.E_star(1e9, 0.3, *other) for other in ((1e9, 0.3), (5e8, 0.2))]
@@ -282,10 +315,13 @@ def sticky(law, plane=True):
     return material, JKR(**numbers) if law == "jkr" else ThorntonNing(**numbers, p_y=0.56e9)
 
 
-@adhesive_law
+ACROSS_GAPS = on(HOSTS, ADHESIVE, ["plane"]) + on([LAMMPS], ["jkr"], ["region", "block"])
+
+
+@pytest.mark.parametrize(("host", "law", "floor"), ACROSS_GAPS)
 @pytest.mark.parametrize("deepest", [0.0, 30.0])
-def test_pull_off_force_by_slow_separation(host, law, deepest, tmp_path):
-    """3/2 pi Gamma R_p to 1e-6, of a sphere that is pressed down to some gaps' length and drawn away."""
+def test_pull_off_force_by_slow_separation(host, law, floor, deepest, tmp_path):
+    """3/2 pi Gamma R_p to 1e-6, of a sphere that is pressed down to some gaps' length and drawn away to its fold."""
     material, c = sticky(law)
     gap = float(-c.fold_overlap)
     down = (deepest + 1.0) * gap
@@ -295,8 +331,11 @@ def test_pull_off_force_by_slow_separation(host, law, deepest, tmp_path):
     coarse = max(0.0, up - 2 * gap)
     moves = ((-down / 20, 20), (coarse / 20, 20), (fine, int((up - coarse) / fine)))
     moves = tuple(((0, 0, way / dt), n) for way, n in moves)
-    scene = on_plane(law, np.zeros((1, 3)), R=R_ADHESIVE, dt=dt, steps=0, moves=moves, materials=[material])
-    force = frames(host, tmp_path, scene)[25:, 0, 11]  # drawn away
+    more = {"moves": moves, "materials": [material], "floor": floor}
+    found = frames(host, tmp_path, on_plane(law, np.zeros((1, 3)), R=R_ADHESIVE, dt=dt, steps=0, **more))[:, 0]
+    force = found[25:, 11]  # drawn away
+    overlap = R_ADHESIVE - found[np.flatnonzero(found[:, 11])[-1], 2]  # the last one
+    assert overlap == pytest.approx(float(dent + branch.fold_overlap), abs=1.5 * fine)
     assert force.min() == pytest.approx(-1.5 * np.pi * GAMMA * float(branch.R_star), rel=1e-6)
     assert force[-1] == 0
 

@@ -8,6 +8,7 @@ import struct
 import numpy as np
 import pytest
 from lammps_decks import DUMP, column, lammps, needs_lammps, run, spheres
+from triangles import fold, tiles
 
 from epdem.scenes.plan.meshes import box, stl_text
 
@@ -17,16 +18,6 @@ R = 0.01  # [m]
 FRICTION = "thornton 1e8 0.3 4e5 tangential history 0.3"
 HARD = FRICTION.replace("4e5", "8e6")
 END = "thermo_style custom step ke f_w[1] f_w[2] f_w[3] f_w[5]\nthermo_modify format float %.17g\n"
-
-
-def tiles(x, y, n, m, height=0.0):
-    """n times m rectangles between limits, of two triangles each."""
-    xs, ys = np.linspace(*x, n + 1), np.linspace(*y, m + 1)
-    found = []
-    for i, j in itertools.product(range(n), range(m)):
-        a, b, c, d = ((xs[i + di], ys[j + dj], height) for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1)))
-        found += [(a, b, c), (a, c, d)]
-    return np.array(found)
 
 
 FOOT = [(-0.08, 0, -0.02), (-0.11, 0.02, -0.02), (-0.11, -0.02, -0.02), (-0.08, 0, -0.02)]
@@ -127,13 +118,7 @@ def test_no_force_acts_past_a_ledge(tmp_path):
     assert force[0] > 0 and force[0] / force[1] == pytest.approx(at[0] / at[1], rel=1e-9)
 
 
-def fold(angle, low, high):
-    """A level floor up to x = 0 and a slope beyond, between two limits of y; angle > 0: the slope goes up."""
-    rise = 0.04 * np.tan(angle)
-    level = tiles((-0.06, 0), (low, high), 1, 1)
-    slope = tiles((0, 0.04), (low, high), 1, 1)
-    slope[..., 2] = slope[..., 0] / 0.04 * rise
-    return [*level, *slope]
+SIDES = (-0.06, 0.04)  # of a fold
 
 
 def test_beside_an_edge_a_sphere_touches_the_face_alone(tmp_path):
@@ -141,9 +126,9 @@ def test_beside_an_edge_a_sphere_touches_the_face_alone(tmp_path):
     places = [(-s * R, y) for y in (-0.06, 0.0) for s in (0.01, 0.1)] + [(-0.3 * R, 0.06)]
     places = [(x, y + 0.02 * (k % 2)) for k, (x, y) in enumerate(places)]
     faces = [
-        *fold(np.radians(-10), -0.08, -0.02),
-        *fold(np.radians(-60), -0.02, 0.04),
-        *fold(np.radians(10), 0.04, 0.09),
+        *fold(np.radians(-10), SIDES, (-0.08, -0.02)),
+        *fold(np.radians(-60), SIDES, (-0.02, 0.04)),
+        *fold(np.radians(10), SIDES, (0.04, 0.09)),
     ]
     (tmp_path / "folds.stl").write_text(stl_text("folds", np.array(faces)))
     head = spheres(*((x, y, 1.00001 * R) for x, y in places), pair=HARD)
@@ -158,7 +143,7 @@ def test_beside_an_edge_a_sphere_touches_the_face_alone(tmp_path):
 def test_a_concave_fold_conserves_energy(degrees, speed, tmp_path):
     """Elastic spheres that hit beside a fold, obliquely: one contact up to 20 degrees, two above."""
     angle = np.radians(degrees)
-    (tmp_path / "fold.stl").write_text(stl_text("fold", np.array(fold(angle, -0.5, 0.5))))
+    (tmp_path / "fold.stl").write_text(stl_text("fold", np.array(fold(angle, SIDES, (-0.5, 0.5)))))
     law = "hertz 1e8 0.3"
     starts = [(x, 0.03 * (k - 9.5)) for k, x in enumerate(np.linspace(-0.25, 0.05, 20).tolist())]
     heights = [1.00001 * max(1.0, (1 + x * float(np.sin(angle))) / float(np.cos(angle))) for x, _ in starts]

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
 
+from epdem.theory.cavity import FINITE_STRAIN
+
 pytestmark = needs_lammps
 
 DAMPED = "restitution 0.3 rolling epsd2 0.1"
@@ -24,29 +26,15 @@ def relative(a, b):
     return np.abs(a / b - 1).max()
 
 
-def test_two_ranks_give_the_energy_of_one_through_exchange_of_atoms_and_new_lists(tmp_path):
-    """The order of sums differs; collisions amplify this, 1e-10 after 3,000 steps; here 1,500."""
-    text = bed(TWO_TYPES, types=2) + "run 1500\n"
-    one, _ = run(text, tmp_path / "one")
-    two, _ = run(text, tmp_path / "two", ranks=2)
-    assert int(re.search(r"Neighbor list builds = (\d+)", one)[1]) >= 5
-    energy = column(one, "KinEng")
-    assert energy[-1] < 0.95 * energy[0]
-    assert relative(energy, column(two, "KinEng")) <= 1e-9
-    assert relative(column(one, "Press"), column(two, "Press")) <= 1e-7
-
-
 def test_moving_borders_of_ranks_and_sorted_atoms_change_no_energy(tmp_path):
+    """The order of sums differs; collisions amplify this, 1e-10 after 3,000 steps; here 1,500."""
     one, _ = run(bed(TWO_TYPES, types=2) + "atom_modify sort 0 0\nrun 1500\n", tmp_path / "one")
     more = "comm_style tiled\nfix borders all balance 50 0.9 rcb\natom_modify sort 50 0.002"
     two, _ = run(bed(TWO_TYPES, types=2, more=more) + "balance 0.9 rcb\nrun 1500\n", tmp_path / "two", ranks=2)
-    assert relative(column(one, "KinEng"), column(two, "KinEng")) <= 1e-9
-
-
-def test_newton_on_changes_no_bit(tmp_path):
-    deck = {newton: bed(TWO_TYPES, types=2, newton=newton) + "run 500\n" + DUMP for newton in ("on", "off")}
-    on, off = (run(deck[newton], tmp_path / newton)[1] for newton in ("on", "off"))
-    assert np.array_equal(on, off)
+    energy = column(one, "KinEng")
+    assert int(re.search(r"Neighbor list builds = (\d+)", one)[1]) >= 5 and energy[-1] < 0.95 * energy[0]
+    assert relative(energy, column(two, "KinEng")) <= 1e-9
+    assert relative(column(one, "Press"), column(two, "Press")) <= 1e-7
 
 
 @pytest.mark.parametrize("style", ["ep", "ep energies"])
@@ -59,38 +47,6 @@ def test_a_restart_file_continues_to_the_bit(style, tmp_path):
     again, continued = run(head + rest + "run 1000\n" + DUMP, tmp_path)
     assert np.array_equal(end, continued)
     assert column(whole, "KinEng")[-1] == column(again, "KinEng")[-1]
-
-
-DENTED = (
-    spheres((0.05, 0, 0), (0.05, 0.0195, 0), (-0.05, 0, 0), (-0.05, 0.0195, 0), pair=THORNTON)
-    + """
-fix hold all setforce 0 0 0
-fix motion all nve/sphere
-run 10
-"""
-)
-BETWEEN = {
-    "two runs": "",
-    "deleted atoms": "region right block 0 0.1 -0.1 0.1 -0.1 0.1\ndelete_atoms region right compress no\n",
-    "restart": "write_restart here\nclear\ncomm_modify vel yes\nread_restart here\nneighbor 0.002 bin\n"
-    "fix hold all setforce 0 0 0\nfix motion all nve/sphere\nrun 0\n",
-}
-
-
-@pytest.mark.parametrize("what", BETWEEN)
-def test_a_dent_stays_between_two_runs(what, tmp_path):
-    """Pressed to 0.5 mm, back to 0.49 mm: F = F_max x^1.5, a = a_max x^0.5, x = 1 - (0.01 mm) 4 E* a_max/(3 F_max)."""
-    back = "group upper id 4\ndisplace_atoms upper move 0 1e-5 0 units box\ncompute p all stress/atom NULL pair\n"
-    back += "compute s all reduce sum c_p[2]\nthermo_style custom step c_s\nrun 1\n"
-    out, _ = run(DENTED + BETWEEN[what] + back, tmp_path)
-    E_star, R_star, alpha = 1e8 / (2 * 0.91), 0.005, 5e-4
-    alpha_y = (math.pi * 4e5 / (2 * E_star)) ** 2 * R_star
-    most = 2 / 3 * math.pi * 4e5 * R_star * alpha_y + math.pi * 4e5 * R_star * (alpha - alpha_y)
-    x = 1 - 1e-5 * 4 * E_star * math.sqrt(R_star * alpha) / (3 * most)
-    unloaded = most * x**1.5 * 0.01951
-    other = 0.0 if what == "deleted atoms" else most * 0.0195
-    assert 0.1 < x < 0.9
-    assert -column(out, "c_s")[-1] == pytest.approx(unloaded + other, rel=1e-5)
 
 
 def test_units_cgs_give_the_same_motion(tmp_path):
@@ -155,35 +111,6 @@ print "speed $v"
 """
     out, _ = run(spheres((0, 0, 0.01001), pair="hertz 1e9 0.3") + deck, tmp_path)
     assert float(re.search(r"^speed (\S+)", out, re.MULTILINE)[1]) == pytest.approx(2.0, rel=1e-4)
-
-
-STICKY = "jkr 1e8 0.3 0.5"
-STICKY_WALLS = {
-    "plane": f"fix wall all wall/ep zplane 0 NULL {STICKY}",
-    "region": f"region wall plane 0 0 0 0 0 1\nfix wall all wall/ep/region wall {STICKY}",
-    "face of a block": f"region wall block INF INF INF INF -0.01 0 side out\nfix wall all wall/ep/region wall {STICKY}",
-}
-
-
-@pytest.mark.parametrize("wall", STICKY_WALLS)
-def test_a_sphere_is_pulled_off_a_wall_across_a_gap(wall, tmp_path):
-    """Johnson, Kendall and Roberts: 3/2 pi Gamma R, and 5/6 pi Gamma R at the gap 3/4 d where the contact ends."""
-    deck = f"""
-{STICKY_WALLS[wall]}
-fix motion all move linear 0 0 1e-5 units box
-timestep 1e-4
-thermo 1
-thermo_style custom step f_wall[3]
-thermo_modify format float %.17g
-run 4000
-"""
-    out, _ = run(spheres((0, 0, 0.01 - 1e-6), pair=STICKY) + deck, tmp_path)
-    force, gamma, R, E_star = column(out, "f_wall[3]"), 0.5, 0.01, 1e8 / (2 * 0.91)
-    gap = 0.75 * math.sqrt(2 * math.pi * gamma / E_star) * (math.pi * gamma * R**2 / (8 * E_star)) ** (1 / 6)
-    assert force.min() == pytest.approx(-1.5 * math.pi * gamma * R, rel=1e-6)
-    last = np.flatnonzero(force)[-2]  # the step behind it corrects the sum of the forces
-    assert last == math.floor((gap + 1e-6) / 1e-9) > 2000
-    assert force[last] == pytest.approx(-5 / 6 * math.pi * gamma * R, rel=0.05)
 
 
 def test_a_run_in_pieces_is_the_whole_run(tmp_path):
@@ -260,6 +187,7 @@ print "pair $(c_values[1]) $(c_values[2]) $(c_values[3]) $(c_values[4]) $(c_valu
     assert pair == pytest.approx([force, elastic, alpha, alpha, a, 1.0], rel=1e-6)
 
 
+DENSE = f"cavity 1e8 0.3 4e5 1.6 2.8 {FINITE_STRAIN} compaction on"
 WRONG = {
     "ep fast": ("pair_style ep", "pair_style ep fast", "pair_style ep: fast is no setting of the style"),
     "law": ("thornton", "tornton", "pair_coeff 1 1: law = tornton, must be hertz, thornton"),
@@ -286,6 +214,17 @@ WRONG = {
         f"{THORNTON} tangential history 0.3",
         "jkr 1e8 0.3 0.1 tangential partial_slip 0.3",
         "tangential partial_slip does not exist beside law jkr",
+    ),
+    "compaction": ("history 0.3", "history 0.3 compaction on", "law thornton has no compaction; take law cavity"),
+    "compaction and cohesion": (
+        f"{THORNTON} tangential history 0.3",
+        f"{DENSE} cohesion sjkr 1e3",
+        "compaction beside cohesion sjkr; remove one",
+    ),
+    "compaction of pairs alone": (
+        f"{THORNTON} tangential history 0.3",
+        f"{DENSE}\nfix w all wall/ep zplane -1 NULL {DENSE.removesuffix(' compaction on')}",
+        "compaction is off here and on in pair_coeff",
     ),
     "gap": (f"{THORNTON} tangential history 0.3", "jkr 1e4 0.3 10", "pulls across gaps up to"),
     "cavity": (THORNTON, "cavity 1e8 0.3 1e5 3 1", "the parameters of cavity do not go together"),
@@ -358,48 +297,6 @@ def test_unlike_types_have_the_lower_strength_and_the_mean_of_the_coefficients(t
     rubbing = (*TWO_TYPES, f"1 2 mixed tangential partial_slip {math.sqrt(0.3 * 0.5)!r} {DAMPED}")
     _, d = run(bed(rubbing, types=2) + "run 300\n" + DUMP, tmp_path / "rubbing")
     assert np.abs(a - d).max() <= 1e-9 * np.abs(a).max()
-
-
-POUR = """units si
-atom_style sphere
-newton off
-comm_modify vel yes
-boundary f f f
-region box block -0.05 0.05 -0.05 0.05 -0.01 0.15 units box
-create_box 2 box
-PAIR
-neighbor 0.001 bin
-neigh_modify delay 0
-region funnel cone z 0 0 0.01 0.03 0 0.03 open 1 units box
-region tube cylinder z 0 0 0.03 0.03 0.15 open 1 open 2 units box
-region bin union 2 funnel tube
-WALL
-region source cylinder z 0 0 0.02 0.08 0.13 units box
-fix ins all pour 150 1 4711 region source diam range 0.003 0.005 dens 2500 2500 vol 0.15 500
-fix weight all gravity 9.81 vector 0 0 -1
-fix motion all nve/sphere
-timestep 2e-6
-thermo 5000
-compute energy all ke
-thermo_style custom step atoms c_energy
-run 40000
-"""
-
-
-def test_two_lines_of_a_deck_for_granular_change_and_spheres_pour_into_a_funnel(tmp_path):
-    """fix pour adds spheres while histories are on their way; all stay in the funnel."""
-    words = f"{THORNTON} tangential history 0.5 restitution 0.4"
-    deck = POUR.replace("PAIR", f"pair_style ep\npair_coeff * * {words}")
-    deck = deck.replace("WALL", f"fix wall all wall/ep/region bin {words}")
-    out, _ = run(deck, tmp_path)
-    granular = "hertz/material 1e8 0.4 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji"
-    before = POUR.replace("PAIR", f"pair_style granular\npair_coeff * * {granular}")
-    before = before.replace("WALL", f"fix wall all wall/gran/region granular {granular} region bin")
-    theirs, _ = run(before, tmp_path / "granular")
-    assert column(out, "Atoms")[-1] == column(theirs, "Atoms")[-1] > 60
-    energy, other = column(out, "c_energy"), column(theirs, "c_energy")
-    assert np.abs(energy[1:5] / other[1:5] - 1).max() <= 1e-6  # they fall
-    assert 0.8 * other[-1] < energy[-1] < other[-1]  # and dissipate more, because they yield
 
 
 TURN = """units lj

@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from plugin_decks import YIELDING, Bodies, contact, good, head, materials, plate
+from plugin_decks import YIELDING, Bodies, contact, good, head, materials
+from triangles import plate
 
 pytestmark = pytest.mark.liggghts
 
@@ -84,38 +85,6 @@ def test_a_moving_mesh_drives_the_spheres(tmp_path):
     hit = still[:, 2] > 0
     assert hit.sum() > 30
     assert np.allclose(rising[hit, 2] - 1.0, still[hit, 2], atol=1e-9)
-
-
-def test_clumps_bounce_and_lose_energy(tmp_path):
-    """fix multisphere: two overlapping spheres per clump; the law reads the clump's mass."""
-    clump = "0.0 0.0 -0.0006 0.0015\n0.0 0.0 0.0006 0.0015\n"
-    text = (
-        head()
-        + "region box block -0.05 0.05 -0.05 0.05 -0.02 0.1 units box\ncreate_box 3 box\nneighbor 1e-3 bin\n"
-        + materials("ep/any")
-        + contact("ep/thornton", wall="primitive")
-        + "timestep 1e-7\nregion in block -0.02 0.02 -0.02 0.02 0.004 0.03 units box\n"
-        "fix t all particletemplate/multisphere 15485863 atom_type 1 density constant 2500 nspheres 2 ntry 100000 "
-        "spheres file clump.txt scale 1.0 type 1\n"
-        "fix d all particledistribution/discrete 15485867 1 t 1.0\n"
-        "fix move all multisphere\n"
-        "fix in all insert/pack seed 32452843 distributiontemplate d vel constant 0. 0. -3.0 insert_every once "
-        "overlapcheck yes all_in yes particles_in_region 20 region in\n"
-        "compute k all ke/multisphere\nthermo_style custom step atoms c_k\nthermo 20000\n"
-        "thermo_modify lost error norm no format float %.15g\nrun 1\nrun 100000\n"
-    )
-    for type in (2, 3):  # LIGGGHTS wants every type up to the wall's to be in use
-        text = text.replace(
-            "timestep",
-            f"create_atoms {type} single 0.04 0.04 {0.01 * type} units box\n"
-            "set group all diameter 0.002\nset group all density 1000\ntimestep",
-            1,
-        )
-    text = text.replace("fix move all multisphere", "group loose type 2 3\nfix move all multisphere")
-    lines = good(tmp_path, text, files={"clump.txt": clump}).text.splitlines()
-    rows = [line.split() for line in lines if len(line.split()) == 3 and line.split()[0].isdigit()]
-    energy = [float(row[2]) for row in rows]
-    assert 0 < energy[-1] < 0.9 * energy[1]
 
 
 def test_the_usual_computes_and_checks_run(tmp_path):

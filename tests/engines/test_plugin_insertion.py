@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from plugin_decks import NU, P_Y, RHO, E, Y, contact, good, head, materials, plate
+from plugin_decks import NU, P_Y, RHO, E, Y, contact, good, head, materials
+from triangles import plate
 
 from epdem.theory import backbones, pair, restitution
 from marks import thorough

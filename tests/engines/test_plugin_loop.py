@@ -13,6 +13,7 @@ from plugin_loop import (
     SAID_OF_WALLS,
     SIMD,
     WITH_ADHESION,
+    WITH_COMPACTION,
     Scene,
     bodies,
     covering,
@@ -24,7 +25,7 @@ from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 
-SCENES = [*NAMED, *covering(), *covering(WITH_ADHESION)]
+SCENES = [*NAMED, *WITH_COMPACTION, *covering(), *covering(WITH_ADHESION)]
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +39,7 @@ def instruction_sets():
 
 
 @pytest.mark.parametrize(
-    "scene", [thorough(s, unless=s in NAMED or n % 3 == 0, id=str(s)) for n, s in enumerate(SCENES)]
+    "scene", [thorough(s, unless=s in NAMED + WITH_COMPACTION or n % 3 == 0, id=str(s)) for n, s in enumerate(SCENES)]
 )
 def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
     """Positions, velocities, forces, spins and torques of 108 spheres after each of 60 steps."""
@@ -51,6 +52,10 @@ def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
         ours, text = outcome(tmp_path / simd, scene, simd=simd)
         assert SAID not in text and SAID_OF_WALLS not in text
         assert np.array_equal(ours, theirs), f"{simd}: {np.abs(ours - theirs).max()}"
+    if scene in WITH_COMPACTION:
+        settings = tuple(s for s in scene.settings if s != "compaction on")
+        without, _ = outcome(tmp_path / "off", replace(scene, settings=settings))
+        assert not np.array_equal(without[-1][:, :4], theirs[-1][:, :4])
 
 
 @pytest.mark.parametrize("law", ["hertz", "cavity", "thornton_ning"])

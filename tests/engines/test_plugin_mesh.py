@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from plugin_decks import Bodies, contact, good, head, materials, per_pair, run
+from triangles import cube, fold
 
 from epdem.scenes.plan.meshes import stl_text
 from marks import thorough
@@ -15,6 +16,7 @@ pytestmark = pytest.mark.liggghts
 
 HALF = 0.02  # of the edge of a box of triangles [m]
 ROOM = ((-0.05, 0.05),) * 3
+BOX = stl_text("plate", cube(HALF, 3))
 COLUMNS = "id x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz"
 LOCAL = " ".join(f"c_w[{k}]" for k in range(1, 7))
 MOVES = {
@@ -26,20 +28,6 @@ MOVES = {
     "growing": "variable d equal 3e-3*(1+step/2500)\nfix grow all adapt 1 atom diameter v_d\n",
 }
 STILL = {"pushed", "growing"}  # spheres begin at rest
-
-
-def box(cells=3):
-    """Triangles of a cube, normals inward, each face cut into 2 cells^2 of them."""
-    at = np.linspace(-HALF, HALF, cells + 1)
-    found = []
-    for axis in range(3):
-        for side in (-HALF, HALF):
-            for u in range(cells):
-                for v in range(cells):
-                    corners = [(at[u], at[v]), (at[u + 1], at[v]), (at[u + 1], at[v + 1]), (at[u], at[v + 1])]
-                    points = [np.insert(c, axis, side) for c in corners]
-                    found += [[points[0], points[1], points[2]], [points[0], points[2], points[3]]]
-    return stl_text("plate", np.array(found))
 
 
 def bodies(speed=30):
@@ -76,7 +64,7 @@ def deck(law, tangential, move, *, ranks=1, steps=3000, stress=False, restart=No
 
 def outcome(folder, text, *, loop="", ranks=1, speed=30):
     """(all frames, the table of wall contacts) of a run, whose log names the steps of the table."""
-    files = {"box.data": bodies(speed).data(ROOM), "plate.stl": box()}
+    files = {"box.data": bodies(speed).data(ROOM), "plate.stl": BOX}
     done = good(folder, text, ranks=ranks, files=files, env={"EPDEM_LOOP": loop} if loop else None)
     reason = (
         "contacts with adhesion" if "ep/jkr" in text else "EPDEM_LOOP" if loop else "steps of compute wall/gran/local"
@@ -160,7 +148,7 @@ def test_a_wall_that_would_lose_its_dents_after_a_restart_is_refused(what, tmp_p
     for old, new in changes:
         assert again.count(old) == 1
         again = again.replace(old, new)
-    done = run(tmp_path, first + "clear\n" + again, files={"box.data": bodies().data(ROOM), "plate.stl": box()})
+    done = run(tmp_path, first + "clear\n" + again, files={"box.data": bodies().data(ROOM), "plate.stl": BOX})
     assert (done.code != 0) == bool(wrong) and wrong in done.error, done.error or done.text[-1000:]
 
 
@@ -184,12 +172,9 @@ def on_wall(folder, starts, wall, loop=""):
     return good(folder, text, files=files, env={"EPDEM_LOOP": loop} if loop else None).last
 
 
-def fold(degrees):
-    """A level floor up to x = 0, and a slope that falls beyond."""
-    low = -0.1 * np.tan(np.radians(degrees))
-    x, z = (-0.1, 0.0, 0.1), (0.0, 0.0, low)
-    a, b = ([(x[k], y, z[k]) for k in range(3)] for y in (-0.4, 0.4))
-    return [t for k in (0, 1) for t in ((a[k], a[k + 1], b[k + 1]), (a[k], b[k + 1], b[k]))]
+def slope(degrees):
+    """A level floor, and a slope that falls beyond x = 0."""
+    return fold(-np.radians(degrees), (-0.1, 0.1), (-0.4, 0.4))
 
 
 @pytest.mark.parametrize("loop", ["", "generic"])
@@ -197,7 +182,7 @@ def fold(degrees):
 def test_beside_a_convex_edge_a_sphere_touches_the_face_alone(degrees, loop, tmp_path):
     starts = [((-s * RADIUS, 0.03 * k, RADIUS), (0.0, 0.0, -5.0)) for k, s in enumerate((0.001, 0.01, 0.1, 0.25, 0.5))]
     plane = on_wall(tmp_path / "plane", starts, None)
-    mesh = on_wall(tmp_path / "mesh", starts, fold(degrees), loop=loop)
+    mesh = on_wall(tmp_path / "mesh", starts, slope(degrees), loop=loop)
     assert (plane[:, 6] > 1).all()
     assert np.abs(mesh[:, 4:7] - plane[:, 4:7]).max() <= 1e-6 * plane[0, 6]
 
@@ -205,6 +190,6 @@ def test_beside_a_convex_edge_a_sphere_touches_the_face_alone(degrees, loop, tmp
 def test_friction_goes_along_over_a_fold(tmp_path):
     """A fold of 0.4 degrees, which LIGGGHTS takes for an edge, has the spins of a plane."""
     starts = [((-s * 1e-6, 0.03 * k, RADIUS), (0.5, 0.0, -5.0)) for k, s in enumerate((2.0, 3.0, 5.0))]
-    plane, mesh = (on_wall(tmp_path / str(degrees), starts, degrees and fold(degrees)) for degrees in (None, 0.4))
+    plane, mesh = (on_wall(tmp_path / str(degrees), starts, degrees and slope(degrees)) for degrees in (None, 0.4))
     assert (mesh[:, 1] > 0).all()
     assert np.abs(mesh[:, 11] - plane[:, 11]).max() < 0.01 * np.abs(plane[:, 11]).max()

@@ -162,6 +162,21 @@ REFUSED |= {
         [("zplane 0.0", "zplane 0.0 computePlasticWork on")],
         ["computePlasticWork", "pair style"],
     ),
+    "compaction of another law": (
+        "ep/thornton",
+        [setting("compaction on")],
+        ["setting compaction on is not available", "only ep/cavity has it"],
+    ),
+    "compaction beside cohesion": (
+        "ep/cavity",
+        [with_pairs("cohesionEnergyDensity", 1e6), models("cohesion sjkr compaction on")],
+        ["setting compaction on is not available", "without cohesion"],
+    ),
+    "compaction of a wall alone": (
+        "ep/cavity",
+        [("zplane 0.0", "zplane 0.0 compaction on")],
+        ["compaction on of a wall needs it for the pair style as well"],
+    ),
     "strain of a wall alone": (
         "ep/thornton",
         [("zplane 0.0", "zplane 0.0 computeContactStrain on")],

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from plugin_decks import Bodies, contact, good, head, materials, per_pair
-from test_plugin_mesh import COLUMNS, HALF, ROOM, box
+from test_plugin_mesh import BOX, COLUMNS, HALF, ROOM
 
 pytestmark = pytest.mark.liggghts
 
@@ -85,7 +85,7 @@ def outcome(folder, text, scene, **env):
     """(frames, rows of thermo with the potential energy, lists made and pairs in them)."""
     f = PLAIN | scene
     room = [PERIOD[k] if side == "p" else ROOM[k] for k, side in enumerate(f["boundary"].split())]
-    files = {"box.data": bodies(f).data(room), "plate.stl": box()}
+    files = {"box.data": bodies(f).data(room), "plate.stl": BOX}
     done = good(folder, text, ranks=f["ranks"], files=files, env=env)
     rows = re.findall(r"^ *\d+ +\d+ +\S+ +\S+ *$", done.text, re.MULTILINE)
     lists = re.findall(r"Total # of neighbors = \d+|Neighbor list builds = \d+", done.text)

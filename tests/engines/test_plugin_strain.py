@@ -7,8 +7,9 @@ from itertools import product
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, head, materials, plate
+from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, head, materials
 from plugin_loop import ADHESIVE, SPACING, Scene, bodies, covering, deck, outcome
+from triangles import plate
 
 from epdem.theory import backbones, pair, restitution
 from marks import thorough

@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 from lammps_decks import run, spheres
-from plugin_decks import Bodies, contact, good, head, materials, plate
+from plugin_decks import Bodies, contact, good, head, materials
+from triangles import plate
 
 R, OVERLAP, TURN, STEPS, DT = 1e-3, 1e-4, 0.01, 300, 1e-7  # [m], [rad], [s]
 PERIOD = 2 * np.pi * STEPS * DT / TURN
