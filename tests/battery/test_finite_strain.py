@@ -127,12 +127,6 @@ def test_off_is_the_law_without_it():
     assert plain.law == off.law and np.array_equal(predict(plain).e_n, predict(off).e_n)
 
 
-@pytest.mark.yade
-def test_yade_has_the_option(tmp_path):
-    soft = experiment(changed("cavity_wall.toml", law={"finite_strain": True}))
-    assert error(engine("yade"), soft, tmp_path) < 1e-4
-
-
 def by_hand(*, E_star, R_star, m_star, speed, Y, share, c=0.82):
     """(e_n, largest contact radius [m]) of an impact: sums of the formulas of docs/strain.md over 400000 overlaps."""
     s_P = math.exp(3 * (2.8 - 3.2 / 3)) / 2

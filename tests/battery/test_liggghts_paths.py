@@ -87,21 +87,6 @@ def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
     assert (overlap > 0).any(axis=0).all()
 
 
-def test_hertz_equals_liggghts_own_without_damping(tmp_path):
-    """An independent check of E* and of the force direction: LIGGGHTS's hertz was not written by us."""
-    overlap, ours, _ = carried("hertz", tmp_path)
-    deck = (tmp_path / "in.path").read_text().replace("model ep/hertz", "model hertz")
-    deck = deck.replace(
-        "pair_style", "fix m4 all property/global coefficientRestitution peratomtypepair 1 1.0\npair_style"
-    )
-    (tmp_path / "in.path").write_text(deck)
-    done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout[-500:]
-    z, _, theirs = np.moveaxis(dump.series(tmp_path / "path.bin"), 2, 0)
-    assert np.array_equal(R - z, overlap)
-    assert np.abs(ours - theirs).max() <= 1e-14 * np.abs(theirs).max()
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_liggghts_has_the_dashpots_force_on_256_paths(name, tmp_path):
     """Below the backbone max(0, F + 2 sqrt(5/6) zeta sqrt(2 E* a m*) v), on it F alone, at speeds of either sign."""

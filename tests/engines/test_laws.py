@@ -3,20 +3,7 @@
 
 import numpy as np
 import pytest
-from hosts import (
-    ADHESIVE,
-    CLASSES,
-    EMBEDDED,
-    LAMMPS,
-    LAWS,
-    LIGGGHTS,
-    TARGETS,
-    YADE,
-    largest_share,
-    on,
-    prepared,
-    run,
-)
+from hosts import ADHESIVE, CLASSES, EMBEDDED, LAMMPS, LAWS, LIGGGHTS, TARGETS, YADE, largest_share, on, prepared, run
 
 from epdem.case.impact import Check
 from epdem.impacts.comparison import compare
@@ -58,18 +45,6 @@ def test_restitution_from_a_tenth_to_300_times_the_yield_speed(name, law, tmp_pa
         assert found["force_max_error"].max() <= 2.5 * (np.pi / steps) ** 2 / 8 + 1e-6
     if law == "thornton":
         assert errors[0] <= 3.2e-4 and errors[1] <= 2.5e-5 and np.log(errors[0] / errors[1]) / np.log(4) > 1.8
-
-
-@pytest.mark.parametrize("name", [YADE])
-@pytest.mark.parametrize("law", ["thornton", "johnson", "cavity"])
-def test_restitution_of_spheres_of_other_radius_and_material_is_second_order(name, law, tmp_path):
-    """Steel of 10 mm on softer brass of 4 mm; at most 9.8e-4 and 5.3e-5."""
-    errors = []
-    for steps, limit in ((100, 2e-3), (400, 2e-4)):
-        found = rows(name, tmp_path / str(steps), "steel_wall", law, steps=steps, impact=TARGETS["sphere"] | SIX)
-        errors.append(found["e_n_error"].max())
-        assert errors[-1] <= limit
-    assert found["e_n_theory"].min() < 0.25 and np.log(errors[0] / errors[1]) / np.log(4) > 1.8
 
 
 @pytest.mark.parametrize(

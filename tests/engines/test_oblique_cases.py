@@ -21,7 +21,6 @@ from epdem.errors import CaseError
 from epdem.impacts import summary
 from epdem.impacts.engine import oblique_pairs
 from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
@@ -55,9 +54,7 @@ WRONG = {
     "viscous: there is no theory of oblique impacts": {"viscous": {"restitution": 0.5}},
     "must lie in [0, 1.55] rad; from the normal": {"angles": ["90 deg"]},
     "must be 'history', 'partial_slip' or 'partial_slip_2'": {"contact": {"friction": 0.3, "tangential": "mindlin"}},
-    "8192 impacts (speeds x angles x spins x phases)": {
-        "angles": {"from": "0 deg", "to": "70 deg", "count": 512},
-    },
+    "8192 impacts (speeds x angles x spins x phases)": {"angles": {"from": "0 deg", "to": "70 deg", "count": 512}},
 }
 
 
@@ -232,34 +229,3 @@ def test_lammps_ends_as_liggghts_to_the_bit(tangential, tmp_path):
     ours, theirs = (run_plan(name, p, tmp_path / name) for name in ("lammps", "liggghts"))
     assert np.array_equal(ours.spin, theirs.spin) and np.abs(ours.spin).max() > 1.0
     assert np.array_equal(ours.tangential, theirs.tangential)
-
-
-@needs_lammps
-@pytest.mark.parametrize("radius", ["10 mm", "4 mm"])
-def test_two_spheres_end_as_in_the_embedded_engine(radius, tmp_path):
-    """The line of centres turns with the spheres, and the embedded engine keeps it."""
-    spheres = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": radius}}
-    p, _ = prepared("oblique_steel", contact={"tangential": "history"}, impact=spheres)
-    ours, theirs = (run_plan(name, p, tmp_path / name) for name in ("lammps", "embedded"))
-    for a, b, limit in ((ours.tangential, theirs.tangential, 0.02), (ours.spin, theirs.spin, 0.06)):
-        assert a.shape == (p.n,) and np.abs(a - b).max() <= limit * np.abs(b).max()
-
-
-def error_of_psi_2(name, folder, **impact):
-    p, prediction = prepared("oblique_steel", impact=impact)
-    found = measure(p, run_plan(name, p, folder))
-    return np.nanmax(np.abs(found["psi_2"] - p.each(prediction.rebound.psi_2)))
-
-
-@pytest.mark.liggghts
-@pytest.mark.yade("module")
-def test_the_rebound_of_maw_barber_and_fawcett_in_yade_is_at_least_as_good_as_in_liggghts(tmp_path):
-    errors = {name: error_of_psi_2(name, tmp_path / name) for name in ("yade", "liggghts")}
-    assert errors["yade"] <= min(0.02, 1.01 * errors["liggghts"]) and errors["liggghts"] < 0.03, errors
-
-
-@pytest.mark.yade("module")
-def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(tmp_path):
-    """At low speed, where the normal does not turn during the contact."""
-    impact = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "6 mm"}, "speeds": ["0.1 m/s"]}
-    assert error_of_psi_2("yade", tmp_path, **impact, angles=["10 deg", "30 deg", "50 deg", "65 deg"]) < 0.02

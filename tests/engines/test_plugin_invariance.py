@@ -78,13 +78,6 @@ def test_a_second_run_without_friction_has_no_dashpot_beside_it(tmp_path):
     assert np.abs(two - one).max() < ROUND_OFF and not one[:, 3:].any() and not two[:, 3:].any()
 
 
-def test_friction_turns_with_a_pair_where_it_has_partial_slip_and_in_history_not(rows):
-    """The friction is a tenth of the force; `tangential history` turns not about the normal."""
-    name = "rigid rotation, one revolution"
-    assert rows("ep/thornton ep/partial_slip_2")[name]()[0] < 2e-3 < 5e-2 < rows("ep/thornton")[name]()[0] < 0.5
-    assert rows("ep/cavity ep/partial_slip")[name]()[0] < 2e-3
-
-
 @pytest.mark.parametrize("model", ["thornton_ning", "edinburgh"])
 def test_liggghts_own_plastic_models_lose_history_when_pairs_change_sides(rows, model):
     """The main failures of the table in docs/evidence.md; their scalars carry the newton flag 1."""

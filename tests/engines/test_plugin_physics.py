@@ -15,11 +15,6 @@ def e_star(i, j):
     return 1 / ((1 - NU[i - 1] ** 2) / E[i - 1] + (1 - NU[j - 1] ** 2) / E[j - 1])
 
 
-def yield_speed(p_y, E_s, R_s, m_s):
-    """Eq. 8.84."""
-    return (np.pi / (2 * E_s)) ** 2 * np.sqrt(8 * np.pi * R_s**3 * p_y**5 / (15 * m_s))
-
-
 def wall_impacts(
     folder,
     model,

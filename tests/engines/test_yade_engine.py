@@ -132,26 +132,17 @@ def test_a_run_that_hangs_is_stopped_with_all_its_children(fake, tmp_path, monke
 
 
 @pytest.mark.yade("alone")
-def test_a_deck_that_raises_in_the_middle_leaves_no_result(tmp_path):
-    p = one_impact()
-    tool = engine("yade")
+@pytest.mark.parametrize(
+    ("after", "before"), [("    O.step()\n", ""), ("", "    now[0][0] =")], ids=["deck", "PyRunner"]
+)
+def test_a_deck_that_raises_in_the_middle_leaves_no_result(after, before, tmp_path):
+    """Also in `record`, which YADE runs from a PyRunner: what it raises must not be swallowed."""
+    p, tool = one_impact(), engine("yade")
     tool.write(p, tmp_path)
     (tmp_path / "path.bin").write_bytes(b"of an earlier run")
     deck = tmp_path / "impact.py"
-    deck.write_text(deck.read_text().replace("    O.step()\n", "    O.step()\n    assert O.iter < 9, 'planted'\n"))
-    with pytest.raises(EngineError, match="AssertionError: planted"):
-        tool.run(p, tmp_path)
-    assert not (tmp_path / "path.bin").exists()
-
-
-@pytest.mark.yade("alone")
-def test_an_error_inside_a_step_is_an_error_of_the_run(tmp_path):
-    """YADE runs `record` from a PyRunner: what it raises must not be swallowed."""
-    p = one_impact()
-    tool = engine("yade")
-    tool.write(p, tmp_path)
-    deck = tmp_path / "impact.py"
-    deck.write_text(deck.read_text().replace("    now[0][0] =", "    assert O.iter < 9, 'planted'\n    now[0][0] ="))
+    raises = f"{after}    assert O.iter < 9, 'planted'\n{before}"
+    deck.write_text(deck.read_text().replace(after or before, raises))
     with pytest.raises(EngineError, match="planted"):
         tool.run(p, tmp_path)
     assert not (tmp_path / "path.bin").exists()

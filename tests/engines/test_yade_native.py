@@ -248,38 +248,6 @@ def test_a_contact_across_a_periodic_face_is_that_of_free_bodies(tmp_path):
     assert np.abs(moved[0] - free[0]).max() <= 3e-3 * np.abs(free).max()  # the cell moves by one step more
 
 
-MINDLIN = (
-    SCENE
-    + """
-law = {law!r}
-scene("Hertz")
-if law == "Mindlin":
-    both = [FrictMat(young=m.young, poisson=m.poisson, density=m.density, frictionAngle=0.3) for m in O.materials]
-    for b in O.bodies:
-        b.mat = both[b.mat.id]
-    loop.geomDispatcher.functors = [f for f in loop.geomDispatcher.functors if "Sphere_Sphere" in str(f)]
-    loop.physDispatcher.functors = [Ip2_FrictMat_FrictMat_MindlinPhys(frictAngle=0)]
-    loop.lawDispatcher.functors = [Law2_ScGeom_MindlinPhys_Mindlin()]
-else:
-    loop.geomDispatcher.functors = [f for f in loop.geomDispatcher.functors if "Sphere_Sphere" in str(f)]
-    loop.physDispatcher.functors = [Ip2_EpMat_EpMat_EpPhys(frictAngle=0)]
-for _ in range(600):
-    O.step()
-forces = {{"%d-%d" % (i.id1, i.id2): list(i.phys.normalForce) for i in O.interactions if i.isReal}}
-json.dump({{"n": forces, "v": state()}}, open("result.json", "w"))
-"""
-)
-
-
-def test_hertz_agrees_with_the_law_of_yade_after_an_exchange_of_three_names(tmp_path):
-    """Every force of a scene of spheres in which nothing yields, without friction: its torque has another arm there."""
-    ours, yades = (result(MINDLIN.format(law=law), tmp_path / law) for law in ("Hertz", "Mindlin"))
-    assert ours["n"].keys() == yades["n"].keys() and len(ours["n"]) > 3
-    force = np.array([np.hypot.reduce(f) for f in ours["n"].values()])
-    difference = np.array([np.hypot.reduce(np.subtract(f, yades["n"][k])) for k, f in ours["n"].items()])
-    assert difference.max() <= 1e-9 * force.max()
-
-
 CLUMP = """
 steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
 O.materials.append(steel)

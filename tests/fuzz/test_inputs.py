@@ -106,18 +106,7 @@ def test_any_material_of_any_size_at_any_speed_has_finite_numbers_or_is_refused(
         one_sentence(str(error))
 
 
-COMMANDS = [
-    "predict",
-    "deck",
-    "soften",
-    "calibrate",
-    "export",
-    "status",
-    "sweep",
-    "points",
-    "run",
-    "nothing",
-]
+COMMANDS = ["predict", "deck", "soften", "calibrate", "export", "status", "sweep", "points", "run", "nothing"]
 OPTIONS = ["-o", "--out", "-e", "--law", "-l", "--json", "--set", "-k", "--hv", "--e-n", "--speed", "--case", "--force"]
 OPTIONS += [
     "--points",

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The rule of quadrature and the bisection that all of the theory shares, on problems solved by hand."""
 
-import re
-from pathlib import Path
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -35,16 +32,3 @@ def test_segment_keeps_its_digits(opening):
     with mp.workdps(50):
         exact = mp.mpf(opening) - mp.sin(opening) * mp.cos(opening)
     assert float(segment(opening)) == pytest.approx(float(exact), rel=1e-14, abs=0)
-
-
-def test_modules_of_the_theory_import_each_other_in_one_direction():
-    """`from .a import b` anywhere in a file, also inside functions: no way leads back."""
-    files = {p.stem: p for p in (Path(__file__).parents[2] / "python/epdem/theory").glob("*.py")}
-    needs = {
-        name: set(re.findall(r"^\s*from \.(\w+) import", p.read_text(), re.MULTILINE)) for name, p in files.items()
-    }
-    assert needs["partial_slip"] >= {"restitution"}
-    while needs:
-        free = {name for name, others in needs.items() if not others & needs.keys()}
-        assert free, f"a circle among {sorted(needs)}"
-        needs = {name: others for name, others in needs.items() if name not in free}

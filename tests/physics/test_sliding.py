@@ -134,10 +134,3 @@ def test_on_the_axis_the_field_is_hertz():
     s = sliding.subsurface(0.0, 0.0, z, mu=0.0, nu=0.3)
     assert s[:, 2, 2] == pytest.approx(-1 / (1 + z * z), rel=1e-12, abs=0)
     assert s[:, 0, 0] - s[:, 2, 2] == pytest.approx(printed.axis_difference(z, 0.3), rel=1e-12, abs=0)
-
-
-@pytest.mark.parametrize(("criterion", "below", "above"), [("tresca", 0.25, 0.29), ("von_mises", 0.3, 0.31)])
-def test_yield_comes_to_the_surface_above_the_frictions_of_the_chapter(criterion, below, above):
-    """Section 8.2.5: 0.25 by Tresca and 0.3 by von Mises, rounded, nu = 0.25 and 0.3."""
-    assert sliding.first_sliding_yield(below - 0.01, 0.3, criterion)[1][2] > 0.3
-    assert sliding.first_sliding_yield(above, 0.3, criterion)[1][2] == 0.0

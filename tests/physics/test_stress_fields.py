@@ -64,29 +64,6 @@ def test_criteria_see_neither_hydrostatic_pressure_nor_order(s, p):
     assert printed.von_mises(*s) <= printed.tresca(*s) + 1e-9 <= 2 / np.sqrt(3) * printed.von_mises(*s) + 2e-9
 
 
-@pytest.mark.parametrize("share", [0.2, 0.7, 1.0])
-def test_unloading_pressure_integrates_to_the_contact_force(share):
-    """Eq. 8.82 over the disc by mpmath: 2 p a*^2 (t - sin t cos t), t = asin(a/a*)."""
-    p, a_max = 2.8, 2.68
-    a = share * a_max
-    integral = mp.quad(
-        lambda r: float(printed.unloading_pressure(float(r), a=a, a_max=a_max, p=p)) * 2 * np.pi * r, [0, a]
-    )
-    force = 2 * p * a_max**2 * (np.arcsin(share) - share * np.sqrt(1 - share**2))
-    assert force == pytest.approx(float(integral), rel=1e-9, abs=0)
-    whole = printed.unloading_pressure(np.linspace(0, 0.99, 5) * a_max, a=a_max, a_max=a_max, p=p)
-    assert whole == pytest.approx(p)
-
-
-def test_mean_pressure_has_three_regimes_and_the_cavity_slope():
-    """d(p_m/Y)/d ln a = 2/3; elastic up to 1.07 at x = 2.5, fully plastic from x = 74 at 2.8 (printed: about 40)."""
-    assert printed.cavity_mean(np.e * 10) - printed.cavity_mean(10) == pytest.approx(2 / 3)
-    x = np.array([1.0, 2.4, 10.0, 1000.0])
-    regimes = [*printed.elastic_mean(x[:2]), printed.cavity_mean(10.0), 2.8]
-    assert printed.mean_pressure(x) == pytest.approx(regimes, rel=1e-15)
-    assert float(printed.mean_pressure(2.52)) == pytest.approx(1.07, abs=2e-3)
-
-
 def test_the_harder_body_yields_only_below_1_75_times_the_softer_ones_stress():
     law = Thornton(E_star=1.14e11, R_star=0.01, p_y=2.8e9)
     speeds = yielding.first_yield_speed(law, np.array([1e9, 1.74e9, 1.76e9, np.inf]), m_star=0.0329)

@@ -90,8 +90,7 @@ def test_the_deviation_at_each_limit_is_that_from_the_finite_strain_branch(limit
 
 
 @pytest.mark.parametrize(
-    ("ratio", "at", "percent"),
-    [(120, 0.3, 8), thorough(300, 0.3, 6), thorough(120, 0.5, 20), thorough(300, 0.5, 20)],
+    ("ratio", "at", "percent"), [(120, 0.3, 8), thorough(300, 0.3, 6), thorough(120, 0.5, 20), thorough(300, 0.5, 20)]
 )
 def test_finite_strain_overestimates_the_restitution_of_the_same_branch_as_its_warning_says(ratio, at, percent):
     """E/Y = ratio, nu = 0.3, a rigid plane: share 1."""

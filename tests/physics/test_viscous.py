@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp, trapezoid
+from scipy.integrate import quad, solve_ivp
 
 from epdem.theory import restitution, viscous
 from epdem.theory.backbones import LAWS, Thornton
@@ -118,6 +118,14 @@ def test_motion_agrees_with_an_integrator_of_scipy(name, v, e):
     assert parting == pytest.approx(found.residual_overlap, abs=ODE * top)
     assert time == pytest.approx(found.contact_time, rel=1e-8, abs=0)
     assert largest == pytest.approx(found.force_max, rel=1e-6, abs=0)  # of 4001 samples
+    assert found.plastic_work == pytest.approx(law.plastic_work(top), rel=1e-8, abs=1e-12 * M * v * v)
+
+
+@pytest.mark.parametrize(("name", "v", "e_n"), [("thornton", 4.5 * V_Y, 0.357), ("cavity", 2.4 * V_Y, 0.416)])
+def test_restitution_lies_above_that_of_the_dashpot_which_does_not_act_while_the_contact_yields(name, v, e_n):
+    """The numbers of docs/laws.md for e = 0.3."""
+    law = LAWS[name](**STEEL, **STRENGTH[name])
+    assert float(viscous.impact(law, m_star=M, speed=v, restitution=0.3).e_n) == pytest.approx(e_n, abs=5e-4)
 
 
 @every_law
@@ -130,56 +138,3 @@ def test_a_dashpot_takes_energy_and_gives_none(law):
         assert np.all(p.plastic_work <= plain.plastic_work * (1 + 1e-12))
         assert np.all(p.e_n <= plain.e_n)
         assert np.all(p.residual_overlap >= 0)
-
-
-@pytest.mark.parametrize(
-    ("name", "e", "v", "e_n"),  # e_n above e: the dashpot does not act while the contact yields; the numbers of laws.md
-    [
-        ("thornton", 0.7, 6.0, None),
-        ("cavity", 0.7, 6.0, None),
-        ("thornton", 0.3, 4.5 * V_Y, 0.357),
-        ("cavity", 0.3, 2.4 * V_Y, 0.416),
-    ],
-)
-def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name, e, v, e_n):
-    """Runge-Kutta of fourth order on alpha(t), written down anew from the law's branches; 4,000 steps.
-
-    The kinks at yield and at the peak leave it near 1e-5 in restitution, 3e-5 for e = 0.3, more in the overlap.
-    """
-    law = LAWS[name](**STEEL, **STRENGTH[name])
-    found = viscous.impact(law, m_star=M, speed=v, restitution=e)
-    number = 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(e))
-    alpha, speed, top, t, dt = 0.0, v, 0.0, 0.0, float(found.contact_time) / 4_000
-
-    def forces(alpha, speed, top):
-        """Force of the law and of the dashpot [N]."""
-        if alpha > law.yield_overlap and alpha >= top:
-            return float(law.force(alpha)), 0.0
-        if top > law.yield_overlap:
-            F, a = law.unloading(alpha, top)
-        else:
-            F, a = law.force(alpha), law.radius(alpha)
-        return float(F), number * np.sqrt(2 * law.E_star * float(a) * M) * speed
-
-    def rate(alpha, speed, top):
-        contact, dashpot = forces(max(alpha, 0.0), speed, top)
-        return speed, -(contact + dashpot) / M, dashpot * speed
-
-    lost = 0.0
-    while t == 0 or sum(forces(alpha, speed, top)) > 0:
-        k1 = rate(alpha, speed, top)
-        k2 = rate(alpha + dt / 2 * k1[0], speed + dt / 2 * k1[1], top)
-        k3 = rate(alpha + dt / 2 * k2[0], speed + dt / 2 * k2[1], top)
-        k4 = rate(alpha + dt * k3[0], speed + dt * k3[1], top)
-        alpha += dt / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0])
-        speed += dt / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1])
-        lost += dt / 6 * (k1[2] + 2 * k2[2] + 2 * k3[2] + k4[2])
-        top, t = max(top, alpha), t + dt
-    way = np.linspace(law.residual_overlap(top), alpha, 2001)  # what the contact still stores when the bodies part
-    stored = trapezoid(law.unloading_force(way, top), way)
-    assert -speed / v == pytest.approx(float(found.e_n), abs=4e-5)
-    assert e_n is None or -speed / v == pytest.approx(e_n, abs=5e-4)
-    assert t == pytest.approx(float(found.contact_time), abs=1.1 * dt)  # seen at the step after
-    assert top == pytest.approx(float(found.overlap_max), rel=1e-4, abs=0)  # the force jumps inside a step
-    viscous_work = float(found.work_in - found.work_out - found.plastic_work)
-    assert lost + stored == pytest.approx(viscous_work, abs=1e-4 * 0.5 * M * v * v)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from engines.hosts import CLASSES, LIGGGHTS
 from epdem.errors import CaseError
 from epdem.theory import restitution
 from epdem.theory.meyer import Meyer
@@ -108,17 +109,10 @@ def test_the_comparison_of_the_page_runs(monkeypatch):
     exec(re.search(r"^```python.*?\n(.*?)^```$", PAGE, re.M | re.S)[1], {})
 
 
-@pytest.mark.liggghts
 @pytest.mark.slow
-def test_liggghts_passes(tmp_path):
-    found = contacts.compare(engines=["liggghts"], out=tmp_path / "out")
-    assert found.passed and len(found.rows) == 20, found.rows
-
-
-@pytest.mark.yade("module")
-@pytest.mark.slow
-def test_yade_passes(tmp_path):
-    found = contacts.compare(engines=["yade"], out=tmp_path / "out")
+@pytest.mark.parametrize("host", [LIGGGHTS, CLASSES])
+def test_a_host_passes(host, tmp_path):
+    found = contacts.compare(engines=[host], out=tmp_path / "out")
     assert found.passed and len(found.rows) == 20, found.rows
 
 

@@ -13,8 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem.case.impact import load, parse
-from epdem.case.toml import read_toml
+from epdem.case.impact import load
 from epdem.engines.lammps.engine import Lammps
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -24,7 +23,7 @@ from epdem.verification.engine_comparison import crosscheck
 from epdem.verification.invariance.check import examine
 from epdem.verification.invariance.pairs import VARIANTS, unequal_spheres
 from epdem.verification.models import OWN_LAW, engine
-from epdem.verification.models.theories import Luding, Mdr
+from epdem.verification.models.theories import Mdr
 from epdem.verification.models.theories import prediction as theory_of
 from marks import thorough
 
@@ -77,8 +76,7 @@ def test_edinburgh_forgets_its_dent_when_atoms_are_sorted_while_they_part(tmp_pa
 
 @pytest.mark.parametrize("case", ["steel_wall", "two_materials", "pair"])
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=pytest.mark.yade if n.startswith("yade") else in_liggghts) for n in CLOSED],
+    "name", [pytest.param(n, marks=pytest.mark.yade if n.startswith("yade") else in_liggghts) for n in CLOSED]
 )
 def test_laws_of_others_have_their_own_closed_restitution(name, case, tmp_path):
     """At 400 steps in contact velocity Verlet leaves 2e-5 of e_n; the contact ends within a step, 1/400."""
@@ -93,24 +91,6 @@ def test_laws_of_others_have_their_own_closed_restitution(name, case, tmp_path):
         assert np.abs(getattr(found, quantity) / theory - 1).max() < limit, quantity
     if name.endswith("luding") and case == "steel_wall":  # both branches of the law are seen
         assert prediction.e_n[0] > 0.99 and prediction.e_n.min() < 0.5 < prediction.e_n[-1]
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param("liggghts-luding", marks=in_liggghts), pytest.param("yade-luding", marks=pytest.mark.yade)]
-)
-def test_luding_of_two_steel_spheres_at_10_m_per_s_is_0_8910_in_both_codes(name, tmp_path, monkeypatch):
-    """k_1 = 1e9 N/m, k_p/k_1 = 5, phi_f = 0.05, R = 10 mm, 7850 kg/m^3; by hand in the test of the closed form."""
-    monkeypatch.setattr(Luding, "of", lambda x: Luding(1e9, 5e9, 0.05, x.R_star))
-    data = read_toml(STEEL)
-    data["impact"] |= {
-        "kind": "sphere-sphere",
-        "target": {"material": "steel", "radius": "10 mm"},
-        "speeds": ["10 m/s"],
-    }
-    x, tool = experiment(parse(data, "test")), OWN_LAW[name]()
-    p = plan(x, theory_of(tool, x))
-    tool.write(p, tmp_path)
-    assert measure(p, tool.run(p, tmp_path)).e_n.to_numpy() == pytest.approx(0.891046, abs=2e-5)
 
 
 @in_lammps
