@@ -59,6 +59,20 @@ def test_face_edge_and_corner_give_the_rebound_of_a_plane(law, shift, tmp_path):
         assert max(abs(vx), abs(vy)) <= 1e-6 * expected, name
 
 
+def test_a_triangle_that_is_flipped_or_occurs_twice_acts_as_one(tmp_path):
+    words, found = "thornton 208e9 0.3 2.8e9", []
+    tops = np.array(TOPS)
+    for name, wall in (("once", tops), ("flipped", tops[:, ::-1]), ("doubled", np.concatenate([tops, tops[::-1]]))):
+        (tmp_path / f"{name}.stl").write_text(stl_text("tops", wall))
+        head = spheres(*((x, y, 1.00001 * R) for x, y in PLACES.values()), pair=words)
+        head = head.replace("-0.1 0.1 -0.1 0.1 -0.1 0.1", "-2 2 -2 2 -2 2")
+        walk = f"velocity all set 0 0 -1\nfix motion all nve/sphere\ntimestep 1.5e-8\nrun 4000\n{DUMP}"
+        found.append(run(f"{head}fix w all wall/ep mesh {name}.stl {words}\n{walk}", tmp_path)[1])
+    assert (found[0][:, 6] > 0.1).all()
+    for rows in found[1:]:
+        assert np.abs(rows[:, 4:7] - found[0][:, 4:7]).max() <= 1e-9 * found[0][0, 6]
+
+
 def rebounds(wall, start, velocity, steps, law=FRICTION, more=""):
     head = spheres(start, pair=law)
     walk = f"velocity all set {velocity}\nfix motion all nve/sphere\ntimestep 1e-6\nthermo 10\n{END}"

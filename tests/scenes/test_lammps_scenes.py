@@ -188,14 +188,14 @@ PLACES = {  # of a sphere above them [m]
 @needs_lammps
 @pytest.mark.liggghts
 @pytest.mark.parametrize("law", ["thornton", "cavity", "jkr"])
-@pytest.mark.parametrize("shift", [0.0, 1e-4])
+@pytest.mark.parametrize("shift", [0.0, 1e-4, 1.0])
 def test_a_face_an_edge_and_a_corner_give_one_rebound_in_both_hosts(law, shift, tmp_path):
     write_stl(tmp_path / "tops.stl", np.array(TOPS) + shift)
     rows = [f"{x + shift!r},{y + shift!r},{1.501e-3 + shift!r},1.5e-3,glass,0,0,-1" for x, y in PLACES.values()]
     (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *rows, ""]))
     data = parts(
         wall=[{"name": "tops", "kind": "stl", "file": "tops.stl", "material": "steel"}],
-        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        room={axis: [f"{shift - 0.04!r} m", f"{shift + 0.04!r} m"] for axis in "xyz"},
         fill=[{"name": "table", "file": "spheres.csv"}],
         phase=[{"name": "hit", "duration": "1 ms"}],
     )

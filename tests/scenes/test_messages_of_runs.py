@@ -221,5 +221,5 @@ def test_folders_and_files_of_a_user(tmp_path):
     with (tmp_path / "lock").open("w+") as lock, says("another run has just ended here; run the command", CaseError):
         files._lock(tmp_path, lock)
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
-    with says("no triangles, or corners that are not numbers; export it anew", CaseError):
+    with says("no triangles, or a text without 'endsolid' at its end; export it anew", CaseError):
         meshes._read(tmp_path / "x.stl", "scene.wall.x.file")

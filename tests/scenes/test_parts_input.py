@@ -106,6 +106,10 @@ def broken(kind: str) -> np.ndarray:
         t[2] = t[2, ::-1]
     if kind == "degenerate":
         t = np.concatenate([t, [[[0, 0, 0], [5, 5, 0], [10, 10, 0]]]])
+    if kind == "doubled":
+        t = np.concatenate([t, t[:1]])
+    if kind == "no number":
+        t[1, 2, 0] = np.nan
     if kind == "many":
         t = np.concatenate([t, [[[0, 0, 0], [10, 0, 0], [5, 5, 5]]]])
     return t
@@ -117,6 +121,8 @@ def broken(kind: str) -> np.ndarray:
         ("open", {"closed": True}, r"bowl.file: open along 3 edges, one at \(0.*\) m; close the mesh"),
         ("flipped", {}, r"bowl.file: .*flipped against each other at \d edges, one at"),
         ("degenerate", {}, r"bowl.file: 1 degenerate triangles .* the first is number 5 at \(0.005, 0.005, 0\) m"),
+        ("doubled", {}, r"bowl.file: 3 edges belong to more than two triangles, one at \(0, 0.005, 0\) m"),
+        ("no number", {}, r"wall.stl': triangle 2 has corners that are not numbers; export it anew"),
         ("many", {}, r"bowl.file: 1 edges belong to more than two triangles, one at \(0.005, 0, 0\) m"),
         ("good", {"scale": 1.0}, r"beyond scene.room; check its unit \(scale = 1; 0.001 if the file is in mm\)"),
         ("good", {"scale": 1e-6}, r"smaller than a sphere; check its unit"),

@@ -106,8 +106,10 @@ def _read(path: Path, place: str) -> FloatArray:
     except Exception as error:  # of a damaged file trimesh says almost anything
         reason = " ".join(str(error).split())[:80] or type(error).__name__
         raise CaseError(f"{place} = '{path}': not an STL file ({reason}); export it anew") from None
-    if not len(triangles) or not np.isfinite(triangles).all():
-        raise CaseError(f"{place} = '{path}': no triangles, or corners that are not numbers; export it anew")
+    if not len(triangles):
+        raise CaseError(f"{place} = '{path}': no triangles, or a text without 'endsolid' at its end; export it anew")
+    if (bad := np.flatnonzero(~np.isfinite(triangles).all(axis=(1, 2)))).size:
+        raise CaseError(f"{place} = '{path}': triangle {bad[0] + 1} has corners that are not numbers; export it anew")
     return triangles
 
 
