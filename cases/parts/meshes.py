@@ -41,9 +41,14 @@ MESHES = {
     "screw": revolve([(0, 4), *line((3, 4), (3, 34), 6), (0, 34)], 24) + helicoid((2.5, 5.5, 8, 11), 5, 29, 2, 24),
 }
 
+
+def write(folder, name, triangles):
+    """NAME.stl in a folder."""
+    rows = [struct.pack("<12fH", 0, 0, 0, *(x for corner in t for x in corner), 0) for t in triangles]
+    head = f"{name} in mm".encode().ljust(80)
+    (Path(folder) / f"{name}.stl").write_bytes(head + struct.pack("<I", len(rows)) + b"".join(rows))
+
+
 if __name__ == "__main__":
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
     for name, triangles in MESHES.items():
-        rows = [struct.pack("<12fH", 0, 0, 0, *(x for corner in t for x in corner), 0) for t in triangles]
-        head = f"{name} in mm".encode().ljust(80)
-        (folder / f"{name}.stl").write_bytes(head + struct.pack("<I", len(rows)) + b"".join(rows))
+        write(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent, name, triangles)
