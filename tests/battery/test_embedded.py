@@ -21,9 +21,7 @@ dashpots = st.sampled_from([1.0, 0.999, 0.9, 0.5, 0.14])
 
 def impacts(c, decade, steps, restitution=1.0, phases=8):
     """Impacts of a 1 kg body at 10^decade times the yield speed, `steps` in the elastic contact time of that speed.
-
-    Contact with dashpot or plastic flow lasts up to 3 times longer; (out, overlap, force, velocity, speed).
-    """
+    Contact with dashpot or plastic flow lasts up to 3 times longer; (out, overlap, force, velocity, speed)."""
     work = 8 / 15 * c.E_star * math.sqrt(c.R_star) * c.delta_y**2.5  # of Hertz
     speed = 10**decade * math.sqrt(2 * work)
     time = 2.87 * (1 / (c.R_star * c.E_star**2 * speed)) ** 0.2

@@ -29,10 +29,8 @@ NYLON = {"E_star": 3e9 / (2 * (1 - 0.33**2)), "R_star": 0.01}  # a_Y/R* = 0.105
 
 @pytest.mark.parametrize("share", [1.0, 0.7, 0.5])
 def test_pressure_and_area_fall_by_the_factors_of_the_strain(share):
-    """Pressure 1 - exp(-0.82 (w a/R*)^-0.7), area 1 - w^2 h/(2 R*) = 1 - (w a/R*)^2/4, by a pocket calculator.
-
-    a: contact radius of small strain, a^2 = 2 R* h. Below w a/R* = 0.03 nothing happens.
-    """
+    """Pressure 1 - exp(-0.82 (w a/R*)^-0.7), area 1 - w^2 h/(2 R*) = 1 - (w a/R*)^2/4, by a pocket calculator. a:
+    contact radius of small strain, a^2 = 2 R* h. Below w a/R* = 0.03 nothing happens."""
     law, plain = Cavity(**PAIR, **SOFT, share=share), Cavity(**PAIR, Y=1e8)
     left = {
         0.2: (0.9203, 0.99),

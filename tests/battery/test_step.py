@@ -80,10 +80,8 @@ def test_no_attraction_and_no_nan_on_any_path(route, c, f):
 @given(st.sampled_from(NAMES), st.data())
 @settings(max_examples=500)
 def test_force_is_never_nan_for_any_finite_overlap_and_memory(route, name, data):
-    """Denormal overlaps, negative ones, memories of another law's restart or of nobody: a number comes out.
-
-    The theory stops at 1e100 m, where the powers in its formulas leave the range of a double; the law does not.
-    """
+    """Denormal overlaps, negative ones, memories of another law's restart or of nobody: a number comes out. The theory
+    stops at 1e100 m, where the powers in its formulas leave the range of a double; the law does not."""
     limit = 1e100 if route == "theory" else sys.float_info.max
     finite = st.floats(-limit, limit)
     c = contact(name, 1.1e11, 0.01, 0.02, route)

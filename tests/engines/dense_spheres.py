@@ -40,10 +40,8 @@ def exact(steps):
 
 
 def geometry(x, radius):
-    """Contacts of spheres along a path: bodies i and j (-1: the floor), overlaps and normals on i for each step.
-
-    x: centres, shape (steps, n, 3).
-    """
+    """Contacts of spheres along a path: bodies i and j (-1: the floor), overlaps and normals on i for each step. x:
+    centres, shape (steps, n, 3)."""
     n = len(radius)
     pairs, overlap, normal = [], [], []
     for i in range(n):
@@ -73,10 +71,8 @@ def forces(x, radius):
 
 
 def alone(n):
-    """Places, radii and velocities of n pairs of spheres, and n spheres that fall on the floor, in any order.
-
-    The impacts are elastic to fully plastic.
-    """
+    """Places, radii and velocities of n pairs of spheres, and n spheres that fall on the floor, in any order. The
+    impacts are elastic to fully plastic."""
     rng = np.random.default_rng(5)
     a = np.column_stack([np.linspace(-60, 60, n), np.zeros(n), np.full(n, 5.0)])
     radius = rng.uniform(0.7, 1.3, 3 * n)

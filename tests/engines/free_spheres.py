@@ -23,11 +23,9 @@ RUBBED, SPRINGS = 17, 18  # the same of friction with partial slip; YADE gives t
 
 @dataclass(frozen=True)
 class Scene:
-    """Spheres [SI], and the plane z = 0 of the material with the number `plane`.
-
-    materials: E, nu, density, and the parameters of the law by property. moves: (velocity, steps), one after the other,
-    in place of free flight; velocities of each sphere are for heavy ones. restitution: of both dashpots.
-    """
+    """Spheres [SI], and the plane z = 0 of the material with the number `plane`. materials: E, nu, density, and the
+    parameters of the law by property. moves: (velocity, steps), one after the other, in place of free flight;
+    velocities of each sphere are for heavy ones. restitution: of both dashpots."""
 
     law: str
     materials: list[dict[str, float]]
@@ -92,10 +90,8 @@ class Scene:
         return lines
 
     def deck(self, begin, again, rest):
-        """A deck; `begin` reads the data file, `again` a restart file, `rest` has {0} for the number of the dump.
-
-        {1}: for a run after which the dump of LAMMPS finds the energies of a restart file.
-        """
+        """A deck; `begin` reads the data file, `again` a restart file, `rest` has {0} for the number of the dump. {1}:
+        for a run after which the dump of LAMMPS finds the energies of a restart file."""
         first, *others = self.runs()
         if self.restart:
             others = ["write_restart middle\nclear\n", again, rest.format(1, "run 0\n"), *others]

@@ -43,10 +43,8 @@ def dense_law(material):
 
 
 def press(folder, name, material, density, *, steps=400, back=0.0, law=dense_law):
-    """(distance, pressure/Y) of all steps: to a relative density and, by `back` [R], from there back.
-
-    LAMMPS moves the box after the forces of a step: the spheres of a step stand as the box of the step before.
-    """
+    """(distance, pressure/Y) of all steps: to a relative density and, by `back` [R], from there back. LAMMPS moves the
+    box after the forces of a step: the spheres of a step stand as the box of the step before."""
     lattice, cells = CELLS[name]
     text = DECK.format(lattice=lattice, cells=cells, law=law(material))
     end = float(distance_at(LATTICES[name], density))

@@ -112,11 +112,9 @@ class Suite:
         return (np.abs(change.sum(axis=1)).max(axis=1) / np.abs(change).max(axis=(1, 2))).max()
 
     def second_impact(self, *, fast):
-        """Deviation of three impacts in one neighbour list from those with a new list every step.
-
-        Spheres fall on fixed ones and gravity brings them back before the list is due. `fast`: soft bodies that part
-        by more than a thousandth of their size in one step, so that no contact distance factor sees them part.
-        """
+        """Deviation of three impacts in one neighbour list from those with a new list every step. Spheres fall on fixed
+        ones and gravity brings them back before the list is due. `fast`: soft bodies that part by more than a
+        thousandth of their size in one step, so that no contact distance factor sees them part."""
         rng = np.random.default_rng(11)
         radius = rng.uniform(1e-3, 1.5e-3, 2 * N)
         x = np.array([[0.01 * (k // 2), 0.0, 0.05] for k in range(2 * N)])
@@ -157,9 +155,7 @@ class Suite:
 
     def revolution(self):
         """Change of the force on a sphere, over the force, after its loaded, sheared pair has turned once as a whole.
-
-        The axis is none of the pair's: it turns about its normal, too. 1000 steps.
-        """
+        The axis is none of the pair's: it turns about its normal, too. 1000 steps."""
         radius, delta, dt, turn = 2e-3, 2e-5, 1e-7, 1000
         x = np.array([[0, 0, radius - delta / 2], [0, 0, delta / 2 - radius], [0.04, 0, 0], [0.04, 0.03, 0]])
         bodies, box = Bodies(np.array([2, 2, 1, 3]), np.full(4, radius), x, 0 * x), [(-0.02, 0.06)] * 3
@@ -260,10 +256,8 @@ class Suite:
 
     @cached_property
     def rows(self):
-        """name -> function that computes once the largest deviation of (pairs, wall impacts).
-
-        The deviation is relative to the largest velocity or spin; for other rows the first number is described there.
-        """
+        """name -> function that computes once the largest deviation of (pairs, wall impacts). The deviation is relative
+        to the largest velocity or spin; for other rows the first number is described there."""
         runs = {name: cache(run) for name, run in self.variants().items()}
         rows = {"momentum of a pair": lambda: (self.momentum(self.plain), None)}
         for name, run in runs.items():

@@ -188,10 +188,8 @@ def rebound(steps, phase, **more):
 
 @pytest.mark.liggghts
 def test_rebound_speeds_of_free_spheres_converge_with_second_order(tmp_path):
-    """The largest error of three phases. No contact bears a force when another one ends and its dent is forgotten.
-
-    The last error, below 1e-6, is beside the order: it is near that of the fine steps.
-    """
+    """The largest error of three phases. No contact bears a force when another one ends and its dent is forgotten. The
+    last error, below 1e-6, is beside the order: it is near that of the fine steps."""
 
     def speeds(steps, phase):
         return frames("liggghts", tmp_path / f"{steps}{phase}", rebound(steps, phase))[-1, :, VELOCITY]

@@ -25,9 +25,7 @@ DASHPOT = {"tangential_restitution": 0.3}
 @pytest.mark.parametrize(("host", "target", "tangential"), CHOICES)
 def test_a_grazing_impact_makes_no_energy_and_has_the_e_t_of_theory(host, target, tangential, tmp_path):
     """Friction 0.1 to 0.8, with and without a tangential dashpot. The steel sphere is elastic at 0.1 m/s on steel.
-
-    Whatever slides throughout has e_t = 1 - mu (1 + e_n)/tan theta; partial slip has the e_t of 200 springs.
-    """
+    Whatever slides throughout has e_t = 1 - mu (1 + e_n)/tan theta; partial slip has the e_t of 200 springs."""
     impact = TARGETS[target] | {"angles": [f"{a} deg" for a in ANGLES]}
     slid = 0
     for mu in (0.1, 0.4, 0.8):

@@ -81,9 +81,7 @@ def rare(host, cluster, bed):
 @pytest.mark.parametrize(("name", "cluster", "bed"), on([LAMMPS, CLASSES], CLUSTERS, BEDS, rare=rare))
 def test_walks_create_no_energy(name, cluster, bed, tmp_path):
     """Falls of the dissipation of the steps ten later over the work; a contact that ends may lose and regain at once.
-
-    The error of the plastic work of the ledger is of second order.
-    """
+    The error of the plastic work of the ledger is of second order."""
     (first, ledger), (second, finer) = (errors(name, tmp_path, cluster, bed, steps) for steps in (500, 1000))
     assert first < 1e-4 and second < 2e-5
     assert ledger < 4e-4 and finer < 0.35 * ledger

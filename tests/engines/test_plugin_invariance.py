@@ -61,9 +61,7 @@ def test_a_second_impact_is_a_new_contact_whatever_the_neighbour_list(rows, law)
 @every_law
 def test_rows_ranks_and_runs_change_a_heap_with_dashpots_by_round_off(rows, law):
     """The evaluation before a second run takes a contact that slides as one that slides, whatever the last digit says.
-
-    Its dashpots see the velocities of the step, not of the half step: 2e-5 to 4e-4, and more across ten such runs.
-    """
+    Its dashpots see the velocities of the step, not of the half step: 2e-5 to 4e-4, and more across ten such runs."""
     off = {k: row()[0] for k, row in rows(f"ep/{law}").items() if "heap" in k}
     of_rows = {k: v for k, v in off.items() if "in place of one" not in k}
     assert len(off) == 6 and len(of_rows) == 4

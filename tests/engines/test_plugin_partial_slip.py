@@ -17,10 +17,8 @@ R, MU = 5e-3, 0.3
 )
 @pytest.mark.parametrize("tangential", [SLIP, SLIP_2])
 def test_a_sheared_pair_that_turns_rigidly_keeps_its_friction(tmp_path, tangential, axis, loop):
-    """One revolution in 1000 steps: |T| to 1e-9, and the friction turns with the pair; also in LIGGGHTS's loop.
-
-    Its direction is off by at most the 2 pi^2/steps of a vector that each step projects on the plane of the contact.
-    """
+    """One revolution in 1000 steps: |T| to 1e-9, and the friction turns with the pair; also in LIGGGHTS's loop. Its
+    direction is off by at most the 2 pi^2/steps of a vector that each step projects on the plane of the contact."""
     delta, N, dt = 1e-6, 1000, 1e-7
     x = np.array([[0, 0, R - delta / 2], [0, 0, -R + delta / 2], [0.04, 0, 0], [0.04, 0.03, 0]])
     types = np.array([2, 2, 1, 3])

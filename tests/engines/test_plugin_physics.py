@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Strengths in LIGGGHTS per type, per pair, as a ratio or left out, and the dashpot of no_history."""
+"""Strengths in LIGGGHTS per type, per pair, as a ratio or left out."""
 
 import numpy as np
 import pytest
-from plugin_decks import DUMP, NU, P_Y, Bodies, E, Y, contact, good, head, materials, per_pair
+from plugin_decks import DUMP, NU, P_Y, Bodies, E, Y, contact, good, head, materials
 
 pytestmark = pytest.mark.liggghts
 
@@ -101,19 +101,3 @@ def test_a_strength_may_be_given_as_ratio_of_the_yield_stress(tmp_path, law, def
     assert (rebound("e", bare + ratio("peratomtype 2.6 2.9 3.1")) == rebound("f", bare + pressure(per_type * Y))).all()
     same = ratio("peratomtypepair 3" + " 2.5" * 9)
     assert (rebound("g", bare + same) == rebound("d", bare + pressure(2.5 * Y))).all()
-
-
-def test_dashpot_of_no_history_is_that_of_the_restitution_given(tmp_path):
-    """With tangential no_history only the dashpot acts; e = 1 makes it vanish, a smaller e slows the patch more."""
-    v = [(2.0, 0, -3.0)] * 3
-    spin = {}
-    for e in (1.0, 0.8, 0.5):
-        properties = materials("ep/thornton", friction=5.0) + per_pair("coefficientRestitution", e)
-        final = wall_impacts(
-            tmp_path / str(e), "ep/thornton", [1, 2, 3], v, properties=properties, tangential="no_history"
-        ).last
-        spin[e] = final[:, 8]
-        if e == 1.0:
-            normal = final[:, 6]
-        assert (final[:, 6] == normal).all()  # the normal force does not use it
-    assert (spin[1.0] == 0).all() and (spin[0.8] > 0).all() and (spin[0.5] > spin[0.8]).all()

@@ -31,18 +31,6 @@ def result(folder, name, edit=lambda text: text):
 def test_every_deck_of_the_page_is_tested():
     named = re.findall(r"`data/upstream/(\w+)\.in`", (ROOT / "docs/upstream.md").read_text())
     assert set(DECKS) == {"head", *named}
-    assert set(DECKS) == {
-        "head",
-        "periodic_thornton_ning",
-        "periodic_edinburgh",
-        "no_history",
-        "rolling",
-        "shear",
-        "restitution",
-        "segfault",
-        "cycle",
-        "sliding",
-    }
 
 
 @pytest.mark.parametrize("model", ["thornton_ning", "edinburgh"])

@@ -13,10 +13,8 @@ SHARE = 0.01  # of the stability limit
 
 
 def rebounds(s, speed, *, kept: bool, steps: int) -> float:
-    """Speed at which a sphere leaves a wall that it overlaps by alpha_max at t = 0 [m/s]; velocity Verlet.
-
-    `speed` [m/s] is that towards the wall at t = 0; `kept`: whether the law remembers its evaluation at t = 0.
-    """
+    """Speed at which a sphere leaves a wall that it overlaps by alpha_max at t = 0 [m/s]; velocity Verlet. `speed`
+    [m/s] is that towards the wall at t = 0; `kept`: whether the law remembers its evaluation at t = 0."""
     x, law, dt = s.x, s.x.native_law(), SHARE * s.limit
     u, v = s.overlap_max, speed
     force, _, memory = law.step(R_star=x.R_star, delta_max=0.0, delta=u)
@@ -33,10 +31,8 @@ def rebounds(s, speed, *, kept: bool, steps: int) -> float:
 @pytest.mark.parametrize(("share", "gain"), [(0.0, 1.2e-4), (-1.0, 7.4e-3), (1.0, 0.0)])
 def test_liggghts_learns_of_an_overlap_at_the_start_one_step_later(share, gain, tmp_path):
     """Speeds at t = 0 over the elastic rebound's: at rest, parting, approaching; what the page for users says of each.
-
     The steps are those of a law that forgets its first evaluation to 1e-9, the round-off of positions over 300 steps;
-    the gain over theory is stated to two digits, where velocity Verlet itself leaves 2e-5.
-    """
+    the gain over theory is stated to two digits, where velocity Verlet itself leaves 2e-5."""
     s = setting(build("start"), "thornton")
     theory, x = s.x.theory(), s.x
     elastic = float(np.sqrt(2 * theory.recovered_work(np.array([s.overlap_max]))[0] / x.m_star))

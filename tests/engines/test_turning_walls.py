@@ -42,9 +42,7 @@ def in_liggghts(folder, loop):
 )
 def test_a_sphere_that_turns_with_its_wall_as_one_body_has_no_friction(engine, loop, tmp_path):
     """The arm of the sphere ends in the middle of the overlap, where the wall has another velocity than at its surface.
-
-    A slip of TURN overlap/2 gives a friction of 4e-3 of the normal force.
-    """
+    A slip of TURN overlap/2 gives a friction of 4e-3 of the normal force."""
     end = in_lammps(tmp_path) if engine == "lammps" else in_liggghts(tmp_path, loop)
     n, F = end[:3] / np.linalg.norm(end[:3]), end[3:]
     assert n[0] == pytest.approx(np.sin(TURN), rel=1e-3)

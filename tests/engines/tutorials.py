@@ -65,11 +65,9 @@ def unpacked(name: str, folder: Path) -> str:
 
 
 def rewritten(deck: str, model: str, steps: int, every: int, *, extra: str = "", restitution: float = 1.0) -> str:
-    """The deck with another model and restitution, short runs, rows of full precision, no dumps.
-
-    Lists are made anew at every step: `hertz` keeps the springs of contacts that have ended until its next list.
-    Cohesion is a tenth of the tutorial's: its 0.3 MPa would pull spheres that yield at 0.1 MPa into each other.
-    """
+    """The deck with another model and restitution, short runs, rows of full precision, no dumps. Lists are made anew at
+    every step: `hertz` keeps the springs of contacts that have ended until its next list. Cohesion is a tenth of the
+    tutorial's: its 0.3 MPa would pull spheres that yield at 0.1 MPa into each other."""
     deck = re.sub(r"&\s*\n", " ", deck)
     deck = re.sub(r"model (hertz|hooke)\b", f"model {model}", deck)
     deck = re.sub(r"(coefficientRestitution peratomtypepair 1) \S+", rf"\1 {restitution}", deck)

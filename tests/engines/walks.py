@@ -65,11 +65,9 @@ def lines(host, values, depth, steps):
 
 
 def walk(host, folder, cluster, materials, steps, *, count=4, seed=7, depth=0.05, mu=0.0):
-    """Frames of `count` random walks of a cluster, shape (steps + 1, count, n, columns of `frames`).
-
-    materials: E, nu, Y of the types, which alternate over the spheres; mu: of partial slip. A walk approaches by
-    `depth` R and oscillates by three sines of up to 0.6 of it.
-    """
+    """Frames of `count` random walks of a cluster, shape (steps + 1, count, n, columns of `frames`). materials: E, nu,
+    Y of the types, which alternate over the spheres; mu: of partial slip. A walk approaches by `depth` R and oscillates
+    by three sines of up to 0.6 of it."""
     x, radius, ways = cluster
     n, (way, radii) = len(x), paths(cluster, steps, count=count, seed=seed, depth=depth)
     kinds = [LIKE | {"E": E, "nu": nu, "yieldStress": Y, "density": 1e15} for E, nu, Y in materials]

@@ -95,12 +95,10 @@ class Spring:
 
 
 def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0, loading_flatness=None):
-    """psi_2, shape (len(psi_1), phases), of spheres on a plane by velocity Verlet; work lost [J]; largest T/(mu F).
-
-    As an engine integrates: the slip of a step is that of the speed half a step before its end. damping: gamma_t over
+    """psi_2, shape (len(psi_1), phases), of spheres on a plane by velocity Verlet; work lost [J]; largest T/(mu F). As
+    an engine integrates: the slip of a step is that of the speed half a step before its end. damping: gamma_t over
     sqrt(k_t m), k_t = 8 G* a. nodes = 0: one spring. loading_flatness: that of a contact that grows to an overlap, in
-    place of the law's; 0 below.
-    """
+    place of the law's; 0 below."""
     psi_1, phase = np.broadcast_arrays(np.array(psi_1, float)[:, None], (np.arange(phases) + 0.5) / phases)
     dt = float(restitution.impact(law, m_star=M, speed=speed).contact_time) / steps
     alpha, v, slip = -phase.ravel() * speed * dt, np.full(phase.size, speed), MU / KAPPA * speed * psi_1.ravel()
@@ -160,9 +158,7 @@ def unit_slip(alpha):
 
 def cycle_losses(shear, legs, *, nodes, cycles, steps=100):
     """Work lost in each of `cycles`, shape (cycles,), over the energy 4 G* a shear^2 of a spring at the first overlap.
-
-    A cycle is a list of legs (overlap at start, at end, slip) of a Hertz contact, all in m; nodes = 0: 400 springs.
-    """
+    A cycle is a list of legs (overlap at start, at end, slip) of a Hertz contact, all in m; nodes = 0: 400 springs."""
     law = LAWS["hertz"]
     alpha = np.concatenate([np.linspace(low, high, steps + 1)[1:] for low, high, _ in legs] * cycles)
     slips = np.repeat([slip / steps for *_, slip in legs] * cycles, steps)

@@ -20,10 +20,8 @@ _X, _W = 0.5 * (_X + 1), 0.5 * _W
 
 
 def pressures(a, *, E_star, R_star, Gamma):
-    """Hertz's peak pressure and that of a flat punch in tension whose rim has the stress intensity of Gamma.
-
-    K = p_1 sqrt(pi a) for p = -p_1/sqrt(1 - r^2/a^2), and K^2/(2 E*) = Gamma (Griffith, Irwin).
-    """
+    """Hertz's peak pressure and that of a flat punch in tension whose rim has the stress intensity of Gamma. K = p_1
+    sqrt(pi a) for p = -p_1/sqrt(1 - r^2/a^2), and K^2/(2 E*) = Gamma (Griffith, Irwin)."""
     return 2 * E_star * a / (np.pi * R_star), np.sqrt(2 * E_star * Gamma / (np.pi * a))
 
 
@@ -43,10 +41,8 @@ def test_elastic_contact_is_a_hertz_contact_and_a_flat_punch_in_tension(numbers)
 
 @elastic
 def test_elastic_contact_minimises_elastic_energy_less_surface_energy(numbers):
-    """At a given approach, U = E* a (al^2 - 2/3 al a^2/R* + a^4/(5 R*^2)) - pi Gamma a^2 is smallest at radius(al).
-
-    F is its slope by al.
-    """
+    """At a given approach, U = E* a (al^2 - 2/3 al a^2/R* + a^4/(5 R*^2)) - pi Gamma a^2 is smallest at radius(al). F
+    is its slope by al."""
     law, g = JKR(**numbers), (np.sqrt(5) - 1) / 2
 
     def U(a, al):

@@ -47,25 +47,6 @@ def test_fits_to_elements_and_ice_at_points_worked_out_by_hand():
     assert printed.bridges_restitution(np.array([0.01, 0.001])) == pytest.approx([0.32, 0.32 * 1.71396], abs=1e-5)
 
 
-def oblique_impact(law, mu, tangents, v_n=1.0):
-    theta = np.arctan(np.asarray(tangents))
-    return oblique.impact(law, mass=M, R=0.01, mu=mu, G_star=G_STAR, v_n=v_n, theta=theta)
-
-
-@pytest.mark.parametrize(
-    ("law", "v_n"), [(Hertz(E_star=E_STAR, R_star=0.01), 1.0), (Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), 5.0)]
-)
-def test_above_the_sliding_angle_friction_takes_all_it_can(law, v_n):
-    """f = mu there; below it the patch sticks for a while and f < mu."""
-    mu = 0.3
-    e_n = float(restitution.e_n(law, m_star=M, speed=v_n))
-    limit = np.tan(oblique.sliding_angle(mu, e_n=e_n, nu=NU))
-    x = oblique_impact(law, mu, [0.8 * limit, 1.03 * limit, 2 * limit], v_n)
-    assert x.f[0] < 0.999 * mu
-    assert x.f[1:] == pytest.approx(mu, rel=1e-3, abs=0)  # 2000 steps, 200 springs
-    assert x.e_t[2] == pytest.approx(1 - mu * (1 + e_n) / (2 * limit), rel=1e-3, abs=0)
-
-
 @pytest.mark.parametrize(
     ("call", "name"),
     [

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import oblique
-from epdem.theory import pair, partial_slip, printed, restitution, timestep, waves, yielding
+from epdem.theory import adhesion, pair, partial_slip, printed, restitution, timestep, waves, yielding
 from epdem.theory.backbones import LAWS
+from epdem.theory.thornton_ning import ThorntonNing
 
 ONE, KG, M, S = np.zeros(3), *np.eye(3)
 SPEED, PA, N, J, DENSITY = M - S, KG - M - 2 * S, KG + M - 2 * S, KG + 2 * M - 2 * S, KG - 3 * M
@@ -103,6 +104,11 @@ def oblique_impact(E_star, R_star, p_y, mass, G_star, v_n):
     return [x.f, x.e_n, x.e_t, x.spin, x.patch]
 
 
+def adhesive_impact(E_star, R_star, Gamma, p_y, m_star, speed):
+    x = adhesion.impact(ThorntonNing(E_star=E_star, R_star=R_star, Gamma=Gamma, p_y=p_y), m_star=m_star, speed=speed)
+    return [x.e_n, x.contact_time, x.force_max, x.overlap_max, x.radius_max, x.plastic_work]
+
+
 def split(E_star, R_star, p_y, m_star, speed, E, nu, density):
     both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
     return list(waves.energy_split(both, m_star=m_star, speed=speed, E=E, nu=nu, density=density).values())
@@ -163,6 +169,15 @@ ROWS = [
     Row(oblique.sliding_angle, SLIDING, ONE),
     Row(oblique_impact, CONTACT | {"p_y": P, "mass": M_STAR, "G_star": (1e10, PA), "v_n": V}, [ONE, ONE, ONE, -S, ONE]),
     Row(slip_rebound, IMPACT | {"p_y": P, "G_star": (1e10, PA), "speed": V, "slip": (0.7, SPEED)}, SPEED),
+    *(
+        Row(
+            adhesive_impact,
+            IMPACT | {"Gamma": (G, PA + M), "p_y": P, "speed": V},
+            [ONE, S, N, M, M, J],
+            f"adhesion[{G}]",
+        )
+        for G in (0.2, 2e3)
+    ),
     Row(oblique.maw_barber_fawcett, {"psi_1": (2.0, ONE), "kappa": (0.8, ONE)}, ONE),
     Row(yielding.yield_speed, IMPACT | {"p_y": P}, SPEED),
     Row(printed.thornton_restitution, {"speed": V, "v_y": (0.5, SPEED)}, ONE),

@@ -52,9 +52,7 @@ def test_no_dashpot_is_the_law_itself(law):
 @pytest.mark.parametrize("e", [0.14, 0.5, 0.9])
 def test_far_above_yield_the_dashpot_takes_half_of_what_it_takes_of_an_elastic_impact(e):
     """Rebound is the second half of a damped elastic impact, and the halves are equal: e_n/e_plastic tends to sqrt(e).
-
-    The loss before yield goes as (v_y/v)^0.5 of the energy of the elastic start: below 1e-4 at 1e6 v_y.
-    """
+    The loss before yield goes as (v_y/v)^0.5 of the energy of the elastic start: below 1e-4 at 1e6 v_y."""
     law, speed = Thornton(**STEEL, p_y=2.8e9), 1e6 * V_Y
     damped = viscous.impact(law, m_star=M, speed=speed, restitution=e)
     plain = restitution.impact(law, m_star=M, speed=speed)

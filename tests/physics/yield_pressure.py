@@ -28,10 +28,8 @@ def flatness(law):
 
 
 def cut_line_load(x, *, force, a, p):
-    """Load per length [N/m] of Hertz's half-ellipse, cut at p [Pa], whose force on the circle a [m] is `force` [N].
-
-    The ellipse has the peak p_0 with (p/p_0)^2 = 3 (1 - F/(pi a^2 p)); Abel's transform of what is left.
-    """
+    """Load per length [N/m] of Hertz's half-ellipse, cut at p [Pa], whose force on the circle a [m] is `force` [N]. The
+    ellipse has the peak p_0 with (p/p_0)^2 = 3 (1 - F/(pi a^2 p)); Abel's transform of what is left."""
     x, share = np.asarray(x, float), np.clip(3 * (1 - force / (np.pi * a * a * p)), 1e-6, 1.0)
     inside = np.maximum((a - x) * (a + x), 0.0)
     core = a * a * (1 - share)  # the circle where the pressure is p

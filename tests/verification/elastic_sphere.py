@@ -30,10 +30,8 @@ DIRECTIONS = {
 
 
 def compliance(degree: Array, nu: float) -> Array:
-    """c_l: inward displacement c_l p of a unit sphere with E = 1 under the radial pressure p P_l(cos theta).
-
-    0 of degree 1, which moves the sphere; 2 (1 - nu^2)/l of large degrees, the half-space.
-    """
+    """c_l: inward displacement c_l p of a unit sphere with E = 1 under the radial pressure p P_l(cos theta). 0 of
+    degree 1, which moves the sphere; 2 (1 - nu^2)/l of large degrees, the half-space."""
     n = np.asarray(degree, float)
     top = (1 + nu) * (4 * n * n - 2 - nu * (4 * n * n - 2 * n - 4))
     bottom = 2 * (n - 1) * (n * n + n + 1 + nu * (2 * n + 1))
@@ -52,9 +50,7 @@ def legendre(x: Array, degrees: int = DEGREES) -> Array:
 
 def shortening(directions: Array, radius: float, nu: float) -> float:
     """Mean displacement of one cap by equal forces on all caps, less that of its own force on a half-space; R = 1.
-
-    Negative where the others press the sphere out below the contact.
-    """
+    Negative where the others press the sphere out below the contact."""
     cap = np.sqrt(1 - radius**2)
     P = legendre(np.array(cap), DEGREES + 1)
     n = np.arange(DEGREES + 1.0)
