@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -79,42 +80,80 @@ DOCUMENTS = {  # words, and what the document must hold
     ),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.81e6 - 1) < 1e-5),
 }
-MISTAKES = {  # words, and what the sentence must hold
-    "run": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
-    "deck": (["steel.toml", "-o", "d", "-e", "embedded"], "reads no deck"),
-    "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
-    "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
-    "verify crosscheck": (["steel.toml", "nowhere.toml"], "nowhere.toml: no such file"),
-    "verify motion": (["steel.toml", "-m", "bad.toml"], "bad.toml: no line of names that begins with t"),
-    "verify contacts": (["bad.toml"], "bad.toml: not a mapping with the keys variables, pair_style"),
-    "verify figures": (["-o", "steel.toml"], "steel.toml"),
-    "verify cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
-    "verify stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),
-    "soften": (["steel.toml", "-k", "-3"], "--factor -3, must lie in (0, 1e12)"),
-    "calibrate": (["steel.toml"], "give one measurement"),
-    "view": (["beads.toml", "-o", "beads.txt"], "--out beads.txt: no picture has this ending; name it beads.png"),
-    "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
-    "export liggghts": (["--check", "."], "contact_models.h is not there; name the folder src"),
-    "export lammps": (["-o", "."], "--out .: it has files; name a new folder"),
-    "export yade": (["-o", "."], "--out .: it has files; name a new folder"),
-    "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
-    "verify rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
-    "status": (["nowhere"], "nowhere: not a folder of a sweep"),
-    "verify data": (["-s", "leeb_X"], "--set 'leeb_X' does not exist; there are hutchings_1979, leeb_C"),
+CASE = ("--case", "steel.toml", "-o", "d")
+SET = ("--set", "impact.body.radius=1 mm,2 mm")
+MISTAKES = {  # words of a call, and what the sentence must hold
+    ("run", "steel.toml", "-e", "abaqus"): "'abaqus' does not exist; there are embedded",
+    ("deck", "steel.toml", "-o", "d", "-e", "embedded"): "reads no deck",
+    ("predict", "steel.toml", "-l", "hook"): "steel.toml: law.name = 'hook' does not exist; there are hertz",
+    ("doctor", "steel.toml"): "extra argument(s) (steel.toml); see epdem doctor --help",
+    ("verify crosscheck", "steel.toml", "nowhere.toml"): "nowhere.toml: no such file",
+    ("verify motion", "steel.toml", "-m", "bad.toml"): "bad.toml: no line of names that begins with t",
+    ("verify contacts", "bad.toml"): "bad.toml: not a mapping with the keys variables, pair_style",
+    ("verify figures", "-o", "steel.toml"): "steel.toml",
+    ("verify cost", "steel.toml", "-l", "hook"): "steel.toml: law.name = 'hook' does not exist",
+    ("verify stability", "-g", "modulu"): "--group 'modulu' does not exist; there are modulus",
+    ("soften", "steel.toml", "-k", "-3"): "--factor -3, must lie in (0, 1e12)",
+    ("calibrate", "steel.toml"): "give one measurement",
+    ("view", "beads.toml", "-o", "beads.txt"): "--out beads.txt: no picture has this ending; name it beads.png",
+    ("cite", "steel.toml", "-e", "abaqus"): "'abaqus' does not exist; there are embedded",
+    ("export liggghts", "--check", "."): "contact_models.h is not there; name the folder src",
+    ("export lammps", "-o", "."): "--out .: it has files; name a new folder",
+    ("export yade", "-o", "."): "--out .: it has files; name a new folder",
+    ("sweep", "steel.toml", "--set", "impact.body.radios=1 mm"): "the nearest: impact.body.radius",
+    ("verify rerun", "steel.toml"): "steel.toml: not a results file of epdem, or damaged",
+    ("status", "nowhere"): "nowhere: not a folder of a sweep",
+    ("verify data", "-s", "leeb_X"): "--set 'leeb_X' does not exist; there are hutchings_1979, leeb_C",
+    ("run", "beads.toml", "--resume", "--fresh"): "--resume continues a run and --fresh begins it again; leave one out",
+    ("run", "beads.toml", "-e", "embedded"): "--engine embedded: a scene runs on liggghts or yade",
+    ("run", "steel.toml", "-e", "embedded", "--format", "gif"): "--format gif: not one of png, svg, pdf; choose one of",
+    ("run", "steel.toml", "-e", "embedded", "-o", "mine"): "a.txt was there before; the folder is not ours; choose",
+    ("run", "steel.toml", "-e", "embedded", "-o", "own.j2"): "own.j2",
+    ("run", "steel.toml", "-e", "embedded", "-o", "/proc/here"): "/proc/here",
+    ("run", "steel.toml", "-e", "liggghts-thornton_ning"): "'epdem verify crosscheck' runs models",
+    ("run", "steel.toml", "-e", "embedded", "--ranks", "2"): "leave it out",
+    ("deck", "steel.toml", "-e", "embedded", "-o", "d"): "reads no deck",
+    ("deck", "steel.toml", "-l", "hertz", "-l", "cavity", "-o", "d"): "one deck for each",
+    ("run", "many.toml", "-e", "embedded", "--steps", "100000"): "samples, at most",
+    ("predict", "steel.toml", "-l", "jkr"): "law jkr needs law.work_of_adhesion (of all pairs), or",
+    ("predict", "--speed", "0 m/s"): "impact.speeds.0 = '0 m/s', must lie in (0, inf)",
+    ("predict", "--radius", "3 kg"): "impact.body.radius = '3 kg', the unit 'kg' has the wrong dimension",
+    ("predict", "steel.toml", "--error", "1"): "'--error': must be less than or equal to 0.1; see epdem predict",
+    ("run", "steel.toml", "--error", "1"): "'--error': must be less than or equal to 0.1; see epdem run --help",
+    ("run", "steel.toml", "--error", "1e-3", "--steps", "9"): "--error: --steps gives the time step; leave it out",
+    ("predict", "steel.toml", "--speed", "1 m/s"): "steel.toml: --speed: the case has its own numbers; leave it out",
+    ("predict", "--law", "hertz"): "--law: it belongs to a case; leave it out",
+    ("calibrate", "steel.toml", "--hv", "-o"): "'--hv': must be a number; see epdem calibrate --help",
+    ("run", "steel.toml", "--ranks", "x"): "'--ranks': must be a whole number; see epdem run --help",
+    ("predict", "--speed", "3"): "'3' has no unit; write \"3 m/s\" if that is what is meant",
+    ("export liggghts",): "epdem export liggghts: name a folder by --out or --check",
+    ("deck", "own.j2", *CASE, "--set", "1=2"): "must be key=value with a key of letters",
+    ("deck", "own.j2", *CASE, "--set", "deck=2"): "this name holds the case's values",
+    ("deck", "own.j2", *CASE, "--set", "a=1", "--set", "a=2"): "is given twice; keep",
+    ("deck", "own.j2", *CASE, "--set", "b=1"): "own.j2 does not use it; check the",
+    ("sweep", "steel.toml", "--set", "impact.body.radius"): "--set 'impact.body.radius': write it as --set impact",
+    ("sweep", "steel.toml", *SET, *SET): "--set impact.body.radius: given twice; write all its values behind one",
+    ("sweep", "steel.toml", *SET, "--points", "points.csv"): "impact.body.radius: the key is in points.csv too; keep",
+    ("sweep", "steel.toml", "--points", "points.csv", "--latin-hypercube", "3"): "--latin-hypercube needs ranges; add",
+    ("sweep", "steel.toml", *SET, "--slurm", "time=1", "--jobs", "2"): "--jobs: give the jobs of a cluster by --slurm",
+    ("calibrate", "hertz.toml", "--hv", "100"): "law hertz never yields; it has nothing to calibrate",
 }
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "steel.toml").write_text(ONE_SPEED)
-    (tmp_path / "bad.toml").write_text("a = ")
-    (tmp_path / "beads.toml").write_text(FEW_BEADS)
+    texts = {"steel.toml": ONE_SPEED, "bad.toml": "a = ", "beads.toml": FEW_BEADS, "mine/a.txt": "of the user"}
+    texts |= {"many.toml": STEEL.replace("count = 32", "count = 512"), "own.j2": "{{ a | default(0) }}\n"}
+    texts |= {"hertz.toml": re.sub(r'"thornton"\n.*', '"hertz"', STEEL), "points.csv": "impact.body.radius\n3 mm\n"}
+    for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
     return tmp_path
 
 
 def test_the_tables_name_every_command():
-    assert set(DOCUMENTS) == set(MISTAKES) == set(COMMANDS)
+    assert set(DOCUMENTS) == {words[0] for words in MISTAKES} == set(COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -134,14 +173,14 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     assert done.err == ""
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_mistake_is_one_sentence_exit_code_2_and_no_file(command, folder, capsys, monkeypatch):
-    words, says = MISTAKES[command]
-    done = call([command, *words], capsys, monkeypatch)
-    assert (done.code, done.out) == (2, "") and says in done.err, done.err
+@pytest.mark.parametrize("words", MISTAKES, ids=" ".join)
+def test_a_mistake_is_one_sentence_exit_code_2_and_no_file(words, folder, capsys, monkeypatch):
+    before = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+    done = call(words, capsys, monkeypatch)
+    assert (done.code, done.out) == (2, "") and MISTAKES[words] in done.err, done.err
     sentences = [line for line in done.err.splitlines() if not line.startswith("DeprecationWarning")]
     assert len(sentences) == 1 and sentences[0].startswith("epdem: ")
-    assert {name for name, _ in done.files} == {"steel.toml", "bad.toml", "beads.toml"}
+    assert {name for name, _ in done.files} == before
 
 
 @pytest.mark.parametrize("command", ["run", "predict", "verify cost", "verify crosscheck"])
@@ -187,18 +226,12 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
     check |= {"unit": "N", "passed": True}
     tables = {"checks": pd.DataFrame([check]), "rows": pd.DataFrame({"particles": [1]})}
     outcome = SimpleNamespace(
-        case=SimpleNamespace(
-            name="s",
-            case=SimpleNamespace(title=TITLE),
-        ),
+        case=SimpleNamespace(name="s", case=SimpleNamespace(title=TITLE)),
         results=SimpleNamespace(tables=tables),
         warnings=["[/y]"],
         deck=SimpleNamespace(steps=1, time_step=1e-6),
         plan=SimpleNamespace(
-            steps=1,
-            time_step=1e-6,
-            case=SimpleNamespace(measured=None),
-            scene=SimpleNamespace(stages=None, measure=[]),
+            steps=1, time_step=1e-6, case=SimpleNamespace(measured=None), scene=SimpleNamespace(stages=None, measure=[])
         ),
         seconds=1.0,
         reused=False,

@@ -54,21 +54,6 @@ def test_surface_energies_make_the_same_pair_and_both_are_too_many():
     uneven["impact"]["target"]["material"] = "other"
     gamma = experiment(parse(uneven, CASE)).law.parameters["work_of_adhesion"]
     assert gamma == pytest.approx(2 * math.sqrt(0.1 * 0.4))
-    for wrong, words in (
-        (
-            ({"name": "jkr", "work_of_adhesion": "0.2 J/m^2"}, {"surface_energy": "0.1 J/m^2"}),
-            "both law.work_of_adhesion",
-        ),
-        ((law, None), "law jkr needs law.work_of_adhesion"),
-        (({"name": "jkr", "work_of_adhesion": "-1 J/m^2"},), "must be >= 0"),
-        (({"name": "jkr", "work_of_adhesion": "1 J"},), "wrong dimension"),
-        (({"name": "johnson"}, {"surface_energy": "0.1 J/m^2"}), "no theory of adhesion exists for it"),
-        (({"name": "cavity"}, {"surface_energy": "0.1 J/m^2"}), "no theory of adhesion exists for it"),
-        (({"name": "thornton"}, {"surface_energy": "0.1 J/m^2"}), "take law.name = 'thornton_ning'"),
-        (({"name": "johnson", "work_of_adhesion": "1 J/m^2"},), "has no such parameter"),
-    ):
-        with pytest.raises(CaseError, match=re.escape(words)):
-            made(*wrong)
 
 
 def test_without_adhesion_the_laws_are_hertz_and_thornton():
@@ -79,9 +64,7 @@ def test_without_adhesion_the_laws_are_hertz_and_thornton():
         assert sticky.contact_time == pytest.approx(bare.contact_time, rel=1e-7)
 
 
-def test_a_dashpot_beside_adhesion_and_yade_are_refused():
-    with pytest.raises(CaseError, match="both adhesion"):
-        made(viscous={"restitution": 0.8})
+def test_yade_refuses_adhesion():
     with pytest.raises(CaseError, match="engine yade has no law with adhesion"):
         check_features(engine("yade"), made())
 

@@ -7,7 +7,6 @@ import sys
 
 import numpy as np
 import pytest
-from sub_models import HEADERS
 from workshop import ROOT, program
 
 sys.path.insert(0, str(ROOT / "tests" / "engines"))
@@ -79,8 +78,3 @@ def test_a_new_model_acts_in_lammps(lammps_plugin, tmp_path, monkeypatch):
     assert cohesive[0] - none[0] == pytest.approx(-DENSITY * RADIUS / 2 * OVERLAP, rel=1e-6)
     rolling = forces_of(tmp_path / "rolling", f"rolling toy {MU}")
     assert rolling[3] == pytest.approx(1e-3 * MU * none[0] * RADIUS / 2 * SPIN, rel=1e-6)
-
-
-def test_the_manual_says_what_this_test_does():
-    section = ROOT.joinpath("ARCHITECTURE.md").read_text().split("## Add a sub-model")[1].split("## ")[0]
-    assert all(re.search(rf"`{kind}/`", section) for kind in HEADERS) and "`sub_models.hpp`" in section

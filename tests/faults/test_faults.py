@@ -11,16 +11,7 @@ from pathlib import Path
 
 import pytest
 from planting import Fault, faults, planted, with_switches
-from workshop import (
-    PYTHON,
-    ROOT,
-    Runner,
-    build_lammps,
-    build_library,
-    build_yade,
-    program,
-    with_one_instruction_set,
-)
+from workshop import PYTHON, ROOT, Runner, build_lammps, build_library, build_yade, program, with_one_instruction_set
 
 SWITCHED = ("library", "plugin", "lammps", "yade")  # all faults of one in one build
 ROOMS = [path.stem for path in sorted((Path(__file__).parent / "planted").glob("*.toml")) if path.stem not in SWITCHED]

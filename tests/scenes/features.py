@@ -5,15 +5,15 @@ from copy import deepcopy
 from pathlib import Path
 
 from hypothesis import strategies as st
-from parts_cases import CASE, FLOOR, GLASS, tetrahedron
+from parts_cases import CASE, FLOOR, GLASS, bead, driven, linear, mm, mps, tetrahedron, timed, vibrating
 
 from epdem.scenes.plan.meshes import stl_text
 
 DENSITY = {"glass": 2500.0, "steel": 7800.0, "rubber": 1100.0}
 RUBBER = {"young_modulus": "50 MPa", "poisson_ratio": 0.4, "density": "1100 kg/m^3", "yield_stress": "0.8 MPa"}
-REGION = {"x": ["-6.5 mm", "6.5 mm"], "y": ["-6.5 mm", "6.5 mm"], "z": ["2 mm", "30 mm"]}  # inside the tube
-UPRIGHT = {"diameter": "12 mm", "z": ["2 mm", "30 mm"], "center": ["0.5 mm", "0 mm"]}
-SLAB = {"y": ["-9 mm", "9 mm"], "z": ["-4 mm", "40 mm"]}
+REGION = {"x": mm(-6.5, 6.5), "y": mm(-6.5, 6.5), "z": mm(2, 30)}  # inside the tube
+UPRIGHT = {"diameter": "12 mm", "z": mm(2, 30), "center": mm(0.5, 0)}
+SLAB = {"y": mm(-9, 9), "z": mm(-4, 40)}
 SIEVE = "opening [mm],retained [%]\n2.4,0\n2.0,40\n1.6,60\n"
 TABLE = "x,y,z,radius,material\n0,0,0.034,0.001,steel\n0.004,0,0.034,0.001,glass\n"
 # two rows of touching spheres that reach through the faces of a periodic room
@@ -31,25 +31,25 @@ HEAP = "x,y,z,radius,material,vx,vy,vz\n" + "".join(
 
 
 def plate(name, material, z, **keys):
-    shape = {"kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", f"{z} mm"], "size": ["18 mm", "18 mm"]}
+    shape = {"kind": "plate", "axis": "z", "center": mm(0, 0, z), "size": mm(18, 18)}
     return {"name": name, "material": material} | shape | keys
 
 
 LID = plate("lid", "rubber", 35.5)
 TUBE = {"name": "tube", "kind": "cylinder", "from": "-2 mm", "to": "32 mm", "diameter": "19.5 mm", "material": "steel"}
 TUBE |= {"angular_velocity": "30 rpm"}
-TURNING = {"name": "screen", "kind": "cone", "from": "-4 mm", "to": "-1 mm", "diameters": ["6 mm", "19 mm"]}
+TURNING = {"name": "screen", "kind": "cone", "from": "-4 mm", "to": "-1 mm", "diameters": mm(6, 19)}
 TURNING |= {"material": "steel", "angular_velocity": "60 rpm"}
 GATE = {"name": "gate", "kind": "plane", "axis": "z", "at": "1 mm", "material": "rubber", "phases": ["first"]}
-BOX = {"name": "tray", "kind": "box", "x": ["-9.5 mm", "9.5 mm"], "y": ["-9.5 mm", "9.5 mm"], "z": ["-1 mm", "1 mm"]}
+BOX = {"name": "tray", "kind": "box", "x": mm(-9.5, 9.5), "y": mm(-9.5, 9.5), "z": mm(-1, 1)}
 DUCT = {"name": "duct", "kind": "cylinder", "axis": "x", "from": "-8 mm", "to": "8 mm", "diameter": "2 mm"}
-DUCT |= {"center": ["1 mm", "-3 mm"], "ends": ["to"], "material": "steel"}
-CONE = {"name": "cap", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": ["1 mm", "2 mm"]}
-CONE |= {"center": ["-1 mm", "-3 mm"], "ends": ["from"], "material": "glass"}
-FUNNEL = {"name": "funnel", "kind": "revolved", "profile": [["9.2 mm", "4 mm"], ["9.6 mm", "20 mm"]]}
-FUNNEL |= {"center": ["0.2 mm", "0 mm"], "material": "steel"}
+DUCT |= {"center": mm(1, -3), "ends": ["to"], "material": "steel"}
+CONE = {"name": "cap", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": mm(1, 2)}
+CONE |= {"center": mm(-1, -3), "ends": ["from"], "material": "glass"}
+FUNNEL = {"name": "funnel", "kind": "revolved", "profile": [mm(9.2, 4), mm(9.6, 20)]}
+FUNNEL |= {"center": mm(0.2, 0), "material": "steel"}
 STONE = {"name": "stone", "kind": "stl", "file": "stone.stl", "scale": 1e-3, "closed": True, "material": "glass"}
-STONE |= {"position": ["-8.5 mm", "-8.5 mm", "-4.5 mm"], "rotate": {"axis": [0, 0, 1], "angle": "10 deg"}}
+STONE |= {"position": mm(-8.5, -8.5, -4.5), "rotate": {"axis": [0, 0, 1], "angle": "10 deg"}}
 WALLS = {
     "planes": [],
     "planes across x and y": [
@@ -57,8 +57,8 @@ WALLS = {
         {"name": "front", "kind": "plane", "axis": "y", "at": "-9 mm", "material": "glass"},
     ],
     "plates across x and y": [
-        plate("left", "rubber", 10) | {"axis": "x", "center": ["-9.5 mm", "0 mm", "10 mm"]},
-        plate("front", "glass", 10) | {"axis": "y", "center": ["0 mm", "-9.5 mm", "10 mm"]},
+        plate("left", "rubber", 10) | {"axis": "x", "center": mm(-9.5, 0, 10)},
+        plate("front", "glass", 10) | {"axis": "y", "center": mm(0, -9.5, 10)},
     ],
     "duct": [DUCT | {"stress": True}],
     "cap": [CONE | {"stress": True}],
@@ -76,7 +76,7 @@ WALLS = {
     "box with stress": [BOX | {"open": ["+z"], "material": "glass", "stress": True}],
     "worn round walls": [
         DUCT | {"wear": "5e-6 m^2/N"},
-        CONE | {"name": "cup", "center": ["-6 mm", "-3 mm"], "wear": "5e-6 m^2/N", "material": "steel"},
+        CONE | {"name": "cup", "center": mm(-6, -3), "wear": "5e-6 m^2/N", "material": "steel"},
     ],
     "worn shapes": [
         wall | {"wear": "5e-6 m^2/N", "material": "steel"}
@@ -149,12 +149,12 @@ AMOUNTS = {
     "mass": {"mass": "0.9 g"},
     "fraction": {"fraction": 0.06},
     "poured": {"count": 60, "rate": "10 kHz"},
-    "thrown later": {"count": 60, "phase": "second", "velocity": ["0 m/s", "0.1 m/s", "-0.2 m/s"], "exact": True},
+    "thrown later": {"count": 60, "phase": "second", "velocity": mps(0, 0.1, -0.2), "exact": True},
     "cylinder": {"count": 60, "exact": False, "region": UPRIGHT},
 }
-BALL = {"name": "ball", "material": "rubber", "radius": "1.5 mm", "position": ["-4 mm", "0 mm", "33 mm"]}
-NEXT = ["-1.02 mm", "0.1 mm", "33 mm"]  # 0.018 mm in the ball
-THROWN = {"velocity": ["0 m/s", "0 m/s", "-1 m/s"], "spin": ["0 rad/s", "10 rad/s", "0 rad/s"]}
+BALL = bead("ball", mm(-4, 0, 33), "1.5 mm", "rubber")
+NEXT = mm(-1.02, 0.1, 33)  # 0.018 mm in the ball
+THROWN = {"velocity": mps(0, 0, -1), "spin": ["0 rad/s", "10 rad/s", "0 rad/s"]}
 BODIES = {
     "none": {},
     "body": {"body": [BALL | THROWN]},
@@ -178,12 +178,12 @@ NUMERICS = {
     "ranks": {"time_step": "5e-6 s", "processors": "xy", "balance": 200},
     "error": {"error": 0.1, "highest_speed": "1 m/s"},
 }
-FIRST, SECOND = {"name": "first", "duration": "6 ms"}, {"name": "second", "duration": "4 ms"}
-LINEAR = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
-VIBRATE = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "0.2 mm"], "frequency": "300 Hz"}
-TURN = {"wall": "lid", "kind": "rotate", "axis": [0, 0, 1], "origin": ["1 mm", "0 mm", "0 mm"], "rate": "60 rpm"}
+FIRST, SECOND = timed("first", "6 ms"), timed("second", "4 ms")
+LINEAR = linear("lid", 0, 0, -0.1)
+VIBRATE = vibrating("lid", mm(0, 0, 0.2), "300 Hz")
+TURN = {"wall": "lid", "kind": "rotate", "axis": [0, 0, 1], "origin": mm(1, 0, 0), "rate": "60 rpm"}
 TILT = TURN | {"axis": [1, 0, 0], "rate": "-60 rpm"}
-PRESS = {"wall": "lid", "kind": "press", "direction": [0, 0, -1], "force": "10 mN", "highest_speed": "0.1 m/s"}
+PRESS = driven("lid", [0, 0, -1], "10 mN", "0.1 m/s")
 PHASES = {
     "rest": [{}, {}],
     "wall moves": [{}, {"move": [LINEAR]}],
@@ -212,7 +212,7 @@ OUTPUTS = {
 }
 MEASURES = {
     "none": None,
-    "number": {"kind": "count", "region": {"diameter": "8 mm", "z": ["0 mm", "20 mm"]}, "material": "glass"},
+    "number": {"kind": "count", "region": {"diameter": "8 mm", "z": mm(0, 20)}, "material": "glass"},
     "mass": {"kind": "mass"},
     "force": {"kind": "force", "wall": "floor", "component": "z"},
     "side force": {"kind": "force", "wall": "lid", "component": "x"},
@@ -220,17 +220,14 @@ MEASURES = {
     "whole torque": {"kind": "torque", "wall": "lid", "component": "magnitude"},
     "flow": {"kind": "flow", "at": "20 mm"},
     "flow of glass": {"kind": "flow", "at": "1 mm", "direction": "+x", "material": "glass"},
-    "height": {"kind": "height", "material": "glass", "share": 0.8, "region": {"x": ["-9 mm", "0 mm"]} | SLAB},
-    "repose": {"kind": "repose", "center": ["0.1 mm", "0 mm"], "region": {"x": ["-9 mm", "9 mm"]} | SLAB},
+    "height": {"kind": "height", "material": "glass", "share": 0.8, "region": {"x": mm(-9, 0)} | SLAB},
+    "repose": {"kind": "repose", "center": mm(0.1, 0), "region": {"x": mm(-9, 9)} | SLAB},
     "slope over x": {"kind": "repose", "over": "x", "material": "glass"},
     "slope over y": {"kind": "repose", "over": "y"},
     "centre of mass": {"kind": "center_of_mass", "axis": "x", "material": "glass"},
-    "centre in a region": {"kind": "center_of_mass", "axis": "y", "region": {"x": ["-9 mm", "9 mm"]} | SLAB},
+    "centre in a region": {"kind": "center_of_mass", "axis": "y", "region": {"x": mm(-9, 9)} | SLAB},
     "highest of mass": {"kind": "center_of_mass", "axis": "z"},
-    "porosity": {
-        "kind": "porosity",
-        "region": {"x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["2 mm", "9 mm"]},
-    },
+    "porosity": {"kind": "porosity", "region": {"x": mm(-10, 10), "y": mm(-10, 10), "z": mm(2, 9)}},
     "speeds of impacts": {"kind": "impact_speed", "bins": 4},
     "plastic work": {"kind": "plastic_work", "bins": 4},
 }

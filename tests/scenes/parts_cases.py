@@ -9,14 +9,52 @@ import numpy as np
 from epdem.case.toml import read_toml
 from epdem.scenes.plan.meshes import stl_text
 
+
+def mm(*lengths: object) -> list[str]:
+    """Lengths in millimetres."""
+    return [f"{x} mm" for x in lengths]
+
+
+def mps(*speeds: object) -> list[str]:
+    """A velocity in metres per second."""
+    return [f"{v} m/s" for v in speeds]
+
+
+def timed(name: str, duration: str, **keys: object) -> dict:
+    """A phase."""
+    return {"name": name, "duration": duration} | keys
+
+
+def bead(name: str, position: list, radius: str = "1.5 mm", material: str = "glass", **keys: object) -> dict:
+    """A single sphere."""
+    return {"name": name, "material": material, "radius": radius, "position": position} | keys
+
+
+def flat(name: str, center: list, size: list, axis: str = "z", **keys: object) -> dict:
+    """A plate of steel."""
+    shape = {"kind": "plate", "axis": axis, "center": center, "size": size}
+    return {"name": name, "material": "steel"} | shape | keys
+
+
+def linear(wall: str, *velocity: object) -> dict:
+    """A motion at constant velocity [m/s]."""
+    return {"wall": wall, "kind": "linear", "velocity": mps(*velocity)}
+
+
+def vibrating(wall: str, amplitude: list, frequency: str) -> dict:
+    """A sinusoidal motion."""
+    return {"wall": wall, "kind": "vibrate", "amplitude": amplitude, "frequency": frequency}
+
+
+def driven(wall: str, direction: object, force: str, highest_speed: str) -> dict:
+    """A wall that a force drives."""
+    return {"wall": wall, "kind": "press", "direction": direction, "force": force, "highest_speed": highest_speed}
+
+
 CASES = Path(__file__).parents[2] / "cases"
-GLASS = {
-    "young_modulus": "10 MPa",
-    "poisson_ratio": 0.25,
-    "density": "2500 kg/m^3",
-    "yield_stress": "0.05 MPa",
-}
+GLASS = {"young_modulus": "10 MPa", "poisson_ratio": 0.25, "density": "2500 kg/m^3", "yield_stress": "0.05 MPa"}
 STEEL = {"young_modulus": "100 MPa", "poisson_ratio": 0.3, "density": "7800 kg/m^3", "yield_stress": "1 MPa"}
+BOX = {"name": "box", "kind": "box", "x": mm(-9, 9), "y": mm(-9, 9), "z": mm(0, 40), "material": "steel"}
 FLOOR = {"name": "floor", "kind": "plane", "axis": "z", "at": "0 mm", "material": "steel"}
 BED = {
     "name": "bed",

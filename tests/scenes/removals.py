@@ -23,16 +23,10 @@ class Removal:
     effect: str
 
 
-def fingerprint(folder: Path, deck: str, seconds: float = 120.0) -> str | None:
-    """Hash of all that a deck's run puts out (thermo rows, dump files), or None if it fails."""
+def fingerprint(folder: Path, deck: str, seconds: float = 120.0, *, rows: bool = True) -> str | None:
+    """Hash of all that a deck's run puts out (thermo rows if `rows`, dump files), or None if it fails."""
     try:
-        done = subprocess.run(
-            command(deck),
-            cwd=folder,
-            capture_output=True,
-            stdin=subprocess.DEVNULL,
-            timeout=seconds,
-        )
+        done = subprocess.run(command(deck), cwd=folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=seconds)
     except subprocess.TimeoutExpired:
         return None
     if done.returncode:
@@ -41,9 +35,9 @@ def fingerprint(folder: Path, deck: str, seconds: float = 120.0) -> str | None:
     timed = False
     for line in done.stdout.splitlines():
         words = line.split()
-        if words[:1] == [b"Step"]:
+        if rows and words[:1] == [b"Step"]:
             timed = words[-1] == b"CPU"  # the last column of LIGGGHTS's own choice, never twice the same
-        elif not ROW.match(line):
+        elif not rows or not ROW.match(line):
             continue
         sha.update(b" ".join(words[:-1] if timed else words))
     for path in sorted(folder.iterdir()):
@@ -54,22 +48,22 @@ def fingerprint(folder: Path, deck: str, seconds: float = 120.0) -> str | None:
     return sha.hexdigest()
 
 
-def _run_without(source: Path, scratch: Path, deck: str, file: str | None, index: int) -> str | None:
+def _run_without(source: Path, scratch: Path, deck: str, file: str | None, index: int, rows: bool) -> str | None:
     shutil.rmtree(scratch, ignore_errors=True)
     shutil.copytree(source, scratch)
     if file is not None:
         lines = (scratch / file).read_text().splitlines(keepends=True)
         del lines[index]
         (scratch / file).write_text("".join(lines))
-    return fingerprint(scratch, deck)
+    return fingerprint(scratch, deck, rows=rows)
 
 
-def removals(source: Path, scratch: Path, deck: str, files: list[str]) -> list[Removal]:
+def removals(source: Path, scratch: Path, deck: str, files: list[str], *, rows: bool = True) -> list[Removal]:
     """The effect of removing each line of `files` from the deck in `source`, which must not have run there yet."""
-    whole = _run_without(source, scratch, deck, None, 0)
+    whole = _run_without(source, scratch, deck, None, 0, rows)
     if whole is None:
         raise AssertionError(f"{source}/{deck} does not run")
-    if _run_without(source, scratch, deck, None, 0) != whole:
+    if _run_without(source, scratch, deck, None, 0, rows) != whole:
         raise AssertionError(f"{source}/{deck} does not repeat itself; removals would prove nothing")
     found = []
     for file in files:
@@ -79,6 +73,6 @@ def removals(source: Path, scratch: Path, deck: str, files: list[str]) -> list[R
             if GUARD in line:
                 found.append(Removal(file, line, "guard"))
                 continue
-            now = _run_without(source, scratch, deck, file, index)
+            now = _run_without(source, scratch, deck, file, index, rows)
             found.append(Removal(file, line, "breaks" if now is None else "nothing" if now == whole else "changes"))
     return found

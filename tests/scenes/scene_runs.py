@@ -2,18 +2,27 @@
 """Case files, decks and runs for the tests of scenes."""
 
 import json
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
+import pytest
 
 from epdem.base.files import write_texts
 from epdem.case.scene import SceneCase
 from epdem.engines import scene_engine
 from epdem.engines.restarts import restart_files
+from epdem.jobs.engine import silent
 from epdem.scenes import run as scene_run
 from epdem.scenes.plan.plan import ScenePlan, plan
+
+LIGGGHTS = pytest.param("liggghts", marks=pytest.mark.liggghts)
+LAMMPS = pytest.param("lammps", marks=pytest.mark.lammps)
+YADE = pytest.param("yade", marks=pytest.mark.yade("module"))
+HOSTS = [LIGGGHTS, LAMMPS, YADE]
 
 
 def value(x: object) -> str:
@@ -43,6 +52,36 @@ def write_deck(case: SceneCase, folder: Path) -> ScenePlan:
 def run(path: Path, engine: str = "liggghts", **options) -> scene_run.SceneOutcome:
     """Run a case file on an engine."""
     return scene_run.run(path, scene_engine(engine), **options)
+
+
+def ran(data: dict, folder: Path, engine: str = "liggghts", **options) -> scene_run.SceneOutcome:
+    """Write the case of `data` into a folder and run it there."""
+    return run(write_case(data, folder), engine, out=folder / "out", **options)
+
+
+def assert_goes_on(
+    p: ScenePlan, folder: Path, engine: str = "liggghts", *, ranks: int = 1, of: slice = slice(None)
+) -> tuple[dict[str, pd.DataFrame], list[int]]:
+    """Run a plan, and let it go on from its restart files: every table has the same bits. (tables, steps).
+
+    of: which of the files but the last, beside those at ends of phases. Frames after a file are removed."""
+    tool = scene_engine(engine)
+    write_texts(folder, tool.files(p))
+    tool.start(tool.scripts[1], folder, ranks=ranks)
+    whole = tool.read(p, folder)
+    kept = {step: path.read_bytes() for step, path in restart_files(folder) if step < whole["rows"]["step"].max()}
+    steps = sorted({*sorted(kept)[of]} | ({*kept} & {*whole["phases"]["end"]}))
+    assert steps
+    for step in steps:
+        for path in [x for x in folder.iterdir() if re.fullmatch(r"\w+\.\d+\.\w+", x.name)]:
+            if path.name.startswith("restart") or int(re.findall(r"\d+", path.name)[0]) > step:
+                path.unlink()
+        (folder / f"restart.{step}.bin").write_bytes(kept[step])
+        again, resumed = tool.resume(p, folder, ranks=ranks, report=silent)
+        assert resumed.step == step
+        for name, table in whole.items():
+            assert table.equals(again[name]), f"{name} from {step}"
+    return whole, steps
 
 
 def in_hosts(data: dict, folder: Path, *hosts: str) -> list[Any]:

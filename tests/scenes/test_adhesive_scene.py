@@ -8,8 +8,6 @@ import pytest
 
 from epdem.case import scene
 from epdem.engines import scene_engine
-from epdem.errors import CaseError
-from epdem.scenes.plan.model import model
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.run import run_plan
 
@@ -95,22 +93,3 @@ def test_the_ledger_of_a_smooth_bed_closes_within_one_percent(tmp_path):
     assert closure(table) < 0.01
     scale = table[["kinetic", "plastic", "work"]].abs().max().sum()
     assert table["adhesion"].iloc[-1] > 0.02 * scale and table["plastic"].iloc[-1] > 0.01 * scale
-
-
-def test_what_does_not_go_with_adhesion_is_refused():
-    def refused(changes):
-        with pytest.raises(CaseError) as error:
-            model(scene.parse(read(changes)))
-        return str(error.value)
-
-    def read(changes):
-        import tomllib
-
-        return tomllib.loads(text(changes))
-
-    assert "has its attraction already" in refused({"friction = 0.5\n": 'friction = 0.5\ncohesion = "1e6 J/m^3"\n'})
-    both = refused({'name = "thornton_ning"': 'name = "thornton_ning"\nwork_of_adhesion = "1 J/m^2"'})
-    assert "both law.work_of_adhesion and materials.powder.surface_energy" in both
-    assert "no theory of adhesion exists" in refused({'"thornton_ning"': '"johnson"'})
-    assert "has no adhesion; take law.name = 'jkr'" in refused({'"thornton_ning"': '"hertz"'})
-    assert "needs law.work_of_adhesion" in refused({'surface_energy = "0.025 J/m^2"\n': ""})

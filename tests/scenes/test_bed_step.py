@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from parts_cases import mm
 from scene_runs import run, write_case
 
 from epdem.case.scene import parse
@@ -101,7 +102,7 @@ def press(**keys):
     """80 spheres of 50 um in a box of 0.5 x 0.5 mm, 0.168 mm high without void, pressed to 0.178 mm: D = 0.94."""
     data = read_toml(CASES / "compaction_powder.toml")
     data["law"] = {"name": "cavity", "finite_strain": True, "compaction": True}
-    data["scene"] |= {"box": ["0.5 mm", "0.5 mm", "0.8 mm"], "count": 80, "height": "0.178 mm"} | keys
+    data["scene"] |= {"box": mm(0.5, 0.5, 0.8), "count": 80, "height": "0.178 mm"} | keys
     data["scene"] |= {"unload_stroke": "0.02 mm"}
     data["output"] |= {"rows": 40, "particles": 20}
     return data

@@ -43,23 +43,6 @@ def restitution_thornton(v: float, Y: float, E: float = 50e6) -> float:
 BED = {"box": '["12 mm", "12 mm", "50 mm"]', "count": "100", "duration": '"0.35 s"'}
 
 
-def test_the_floor_under_a_bed_between_smooth_walls_carries_its_weight(tmp_path):
-    outcome = run(
-        settle(tmp_path, restitution=0.5, output="loads = true\ncontacts = 20\nparticles = 20", **BED),
-        out=tmp_path / "out",
-    )
-    weight = 100 * 4 / 3 * math.pi * RADIUS**3 * DENSITY * G
-    rows = outcome.results.rows
-    late = rows[rows["time"] > 0.3]
-    # walls without friction hold no vertical force; single rows still tremble by 0.3 %
-    assert late["floor_load"].mean() == pytest.approx(weight, rel=5e-3)
-    # and once more from the overlaps that are stored, by the law alone, at three instants
-    found = outcome.results.contacts
-    floor = found[(found["wall"] == "floor") & (found["step"] > 0.85 * found["step"].max())].groupby("step")["force"]
-    assert floor.sum().mean() == pytest.approx(weight, rel=0.02)
-    assert outcome.results.checks["key"].eq("floor_load").any() and outcome.passed
-
-
 def test_lone_spheres_of_a_scene_bounce_to_e_n_squared_of_their_fall(tmp_path):
     E, Y = 5e9, 8e6
     path = settle(

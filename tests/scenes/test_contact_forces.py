@@ -1,32 +1,35 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Forces, normals and radii of the table of contacts, of beds at rest with friction in every engine."""
+"""Forces, normals and radii of the table of contacts, of beds at rest with friction in every engine; of many radii."""
 
 import copy
+import time
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
-from scene_runs import run, write_case
+from parts_cases import linear, mm, timed
+from scene_runs import HOSTS, run, write_case
 
+from epdem.case import scene
 from epdem.case.scene import load
+from epdem.case.toml import read_toml
 from epdem.scenes.plan.model import pair_law
-from epdem.scenes.tables import results
+from epdem.scenes.plan.plan import plan
+from epdem.scenes.tables import columns, results
 
 GLASS = {"young_modulus": "10 MPa", "poisson_ratio": 0.3, "density": "2500 kg/m^3", "yield_stress": "0.02 MPa"}
-BOX = {"name": "box", "kind": "box", "x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "20 mm"]}
+BOX = {"name": "box", "kind": "box", "x": mm(-4, 4), "y": mm(-4, 4), "z": mm(0, 20)}
 CASE = {
     "case": {"name": "rest", "title": "A bed at rest", "source": "a test"},
     "materials": {"glass": GLASS},
     "law": {"name": "thornton"},
     "viscous": {"restitution": 0.3},
     # rolling friction, without which spheres roll on for seconds
-    "contact": {
-        "friction": 0.5,
-        "tangential_restitution": 0.3,
-        "rolling": {"model": "epsd2", "coefficient": 0.1},
-    },
+    "contact": {"friction": 0.5, "tangential_restitution": 0.3, "rolling": {"model": "epsd2", "coefficient": 0.1}},
     "scene": {
         "kind": "parts",
-        "room": {"x": ["-6 mm", "6 mm"], "y": ["-6 mm", "6 mm"], "z": ["0 mm", "20 mm"]},
+        "room": {"x": mm(-6, 6), "y": mm(-6, 6), "z": mm(0, 20)},
         "gravity": "9.81 m/s^2",
         "wall": [
             {"name": "floor", "kind": "plane", "axis": "z", "at": "0 mm", "material": "glass"},
@@ -35,12 +38,12 @@ CASE = {
         "fill": [
             {
                 "name": "bed",
-                "region": {"x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "16 mm"]},
+                "region": {"x": mm(-4, 4), "y": mm(-4, 4), "z": mm(0, 16)},
                 "particles": [{"material": "glass", "radius": "1 mm"}],
                 "count": 30,
             }
         ],
-        "phase": [{"name": "rest", "duration": "0.8 s"}],
+        "phase": [timed("rest", "0.8 s")],
     },
     "output": {"contacts": 2, "particles": 2, "loads": True, "energy": True},
     "numerics": {"time_step": "5 us"},
@@ -50,23 +53,15 @@ PRESSED = copy.deepcopy(CASE)  # to overlaps of half a radius, where contacts gr
 PRESSED["law"] = {"name": "cavity", "finite_strain": True, "compaction": True}
 PRESSED["viscous"] = {"restitution": 0.14}
 PRESSED["contact"] = {"friction": 0.5, "tangential_restitution": 0.14}
-LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "13 mm"], "size": ["8 mm", "8 mm"]}
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": mm(0, 0, 13), "size": mm(8, 8)}
 PRESSED["scene"]["wall"].append(LID | {"material": "glass"})
-PRESSED["scene"]["fill"][0]["region"]["z"] = ["0 mm", "12 mm"]
+PRESSED["scene"]["fill"][0]["region"]["z"] = mm(0, 12)
 PRESSED["scene"]["phase"] = [
-    {"name": "fall", "duration": "0.05 s"},
-    {
-        "name": "press",
-        "duration": "0.1 s",
-        "until": {"wall": "lid", "force": f"{PRESS} N", "after": "0 s"},
-        "move": [{"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}],
-    },
-    {"name": "rest", "duration": "0.4 s"},
-]
-ENGINES = [
-    pytest.param("liggghts", marks=pytest.mark.liggghts),
-    pytest.param("yade", marks=pytest.mark.yade("module")),
-    pytest.param("lammps", marks=pytest.mark.lammps),
+    timed("fall", "0.05 s"),
+    timed(
+        "press", "0.1 s", until={"wall": "lid", "force": f"{PRESS} N", "after": "0 s"}, move=[linear("lid", 0, 0, -0.1)]
+    ),
+    timed("rest", "0.4 s"),
 ]
 
 
@@ -76,7 +71,7 @@ def beds():
     return {}
 
 
-@pytest.fixture(params=ENGINES)
+@pytest.fixture(params=HOSTS)
 def make_bed(request, beds, tmp_path_factory, module_of_yade):
     """(case file, results) of a bed in an engine."""
 
@@ -192,3 +187,41 @@ def test_paraview_reads_a_line_for_each_contact(bed):
     assert np.array_equal(support.vtk_to_numpy(cells.GetArray("contact_force")), force)
     radius = support.vtk_to_numpy(cells.GetArray("contact_radius")).ravel()
     assert np.array_equal(radius, contacts["contact_radius"])
+
+
+CASES = Path(__file__).parents[2] / "cases"
+N = 100_000
+
+
+def bed_of_radii(name):
+    """A planned scene and N contacts of it: half with walls of the same type, loaded and partly unloaded."""
+    p = plan(scene.parse(read_toml(CASES / f"{name}.toml"), name))
+    rng = np.random.default_rng(7)
+    radius = rng.uniform(0.5, 1.5, (2, N)) * p.smallest
+    R_star = np.where(rng.random(N) < 0.5, radius[0], radius[0] * radius[1] / radius.sum(axis=0))
+    largest = 10 ** rng.uniform(-5, -1.5, N) * R_star
+    return p, R_star, rng.uniform(0.9, 1.0, N) * largest, largest
+
+
+@pytest.mark.parametrize("name", ["settle_glass", "adhesive_powder"])
+def test_a_hundred_thousand_radii_take_less_than_a_second_and_each_row_is_that_of_the_theory(name):
+    p, R_star, overlap, largest = bed_of_radii(name)
+    contacts = pd.DataFrame({"i": 1, "j": 1, "R_star": R_star, "radius": 2 * R_star, "overlap": overlap})
+    contacts = contacts.assign(largest=largest, attached=True, screening=1.0, grown_overlap=0.0, body_pressure=0.0)
+    begin = time.process_time()
+    table = columns.energies(p, contacts)
+    assert time.process_time() - begin < 1.0
+    spec, E_star = pair_law(p.case, p.model.types[0].material, p.model.types[0].material)
+    for k in range(0, N, N // 50):
+        law = spec.theory(E_star=E_star, R_star=float(R_star[k]), radius=float(2 * R_star[k]))
+        if spec.adheres:
+            top = np.maximum(law.radius(largest[k]), law.touch_radius)
+            branch, dent = law.branch(top)
+            force = branch.force(branch.radius(overlap[k] - dent))
+        else:
+            dent = law.residual_overlap(largest[k])
+            force = law.unloading_force(overlap[k], largest[k]) if overlap[k] > dent else 0.0
+        assert table["force"][k] == pytest.approx(force, rel=1e-9, abs=1e-15)
+        assert table["residual_overlap"][k] == pytest.approx(dent, rel=1e-9, abs=1e-18)
+    assert (table["elastic_energy"] != 0).sum() > N // 10
+    assert spec.adheres or (table["plastic_work"] > 0).sum() > N // 10

@@ -5,12 +5,9 @@ import itertools
 
 import numpy as np
 import pytest
-from parts_cases import FLOOR, GLASS, STEEL, parts
-from scene_runs import run, write_case
+from parts_cases import FLOOR, GLASS, STEEL, bead, mm, parts, timed
+from scene_runs import ran
 
-from epdem.case.scene import parse
-from epdem.errors import CaseError
-from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.network import node_currents
 
 CELLS = {  # places of a cell in its sides; the next spheres; contacts of a sphere with the next layer; layers of a cell
@@ -53,9 +50,9 @@ ROOF = FLOOR | {"name": "roof", "at": "3.98 mm"}
 
 def held(floor=0.0, roof=2.0, **changes):
     """A frozen sphere of glass between two planes of steel."""
-    ball = {"name": "ball", "material": "glass", "radius": "2 mm", "position": ["0 mm", "0 mm", "1.99 mm"]}
+    ball = bead("ball", mm(0, 0, 1.99), "2 mm", "glass")
     walls = [w | ({} if V is None else {"potential": f"{V} V"}) for w, V in ((FLOOR, floor), (ROOF, roof))]
-    data = parts(wall=walls, fill=[], body=[ball | {"frozen": True}], phase=[{"name": "rest", "duration": "2 ms"}])
+    data = parts(wall=walls, fill=[], body=[ball | {"frozen": True}], phase=[timed("rest", "2 ms")])
     data["law"] = {"name": "hertz"}
     data["output"] = {"rows": 20, "particles": 2, "contacts": 2} | changes
     metals = ((GLASS, "3 S/m"), (STEEL, "7 S/m"))
@@ -69,27 +66,8 @@ def held(floor=0.0, roof=2.0, **changes):
 )
 def test_a_sphere_between_two_planes_is_two_contacts_in_series(engine, tmp_path):
     """2 k a each, a = sqrt(R delta), 2/k = 1/3 + 1/7."""
-    found = run(write_case(held(), tmp_path), engine, out=tmp_path / "out").results.currents
+    found = ran(held(), tmp_path, engine).results.currents
     expected = (2 / (1 / 3 + 1 / 7)) * np.sqrt(2e-3 * 1e-5)
     assert found["conductance"].to_numpy() == pytest.approx(np.full(3, expected), rel=1e-6)
     assert found["roof_current"].to_numpy() == pytest.approx(2 * found["conductance"].to_numpy(), rel=1e-12)
     assert found["floor_current"].to_numpy() == pytest.approx(-found["roof_current"].to_numpy(), rel=1e-9)
-
-
-def without_conductivity():
-    data = held()
-    del data["materials"]["steel"]["electrical_conductivity"]
-    return data
-
-
-@pytest.mark.parametrize(
-    ("data", "sentence"),
-    [
-        (held(roof=None), r"scene\.wall\.floor\.potential: no other wall has another potential"),
-        (held(contacts=0), r"currents follow from the contacts; give output\.contacts"),
-        (without_conductivity(), r"materials\.steel\.electrical_conductivity is missing: wall floor has a potential"),
-    ],
-)
-def test_potentials_without_a_current_are_refused(data, sentence):
-    with pytest.raises(CaseError, match=sentence):
-        plan(parse(data))

@@ -2,24 +2,20 @@
 """A phase ends at the height or density of a bed, and at an energy or number of spheres between two rows."""
 
 import math
-from importlib import import_module
 
-import pandas as pd
 import pytest
-from parts_cases import BED, FLOOR, parts
-from scene_runs import restart_steps, run, write_case
-from test_ends_of_phases import BOX, DOWN, ENGINES, LID
-from test_press import COUNT, HEIGHT, RADIUS, SIDE, evaluated, plate, press, without
+from parts_cases import BOX, FLOOR, parts, timed
+from scene_runs import HOSTS, LAMMPS, LIGGGHTS, assert_goes_on, ran, run, write_case
+from test_press import COUNT, HEIGHT, RADIUS, SIDE, plate, press, without
+from test_press_plans import evaluated
 
 from epdem.case.scene import parse
-from epdem.engines import log, scene_engine
-from epdem.errors import CaseError
-from epdem.jobs.stage import write_deck
+from epdem.engines import scene_engine
 from epdem.scenes.judge import summary
 from epdem.scenes.plan.plan import plan
 
 SOLID = COUNT * 4 / 3 * math.pi * RADIUS**3 / SIDE**2  # height [m] of the spheres of the press without void
-DECKS = [ENGINES[0], ENGINES[2]]  # that look between rows at energies and numbers
+DECKS = [LIGGGHTS, LAMMPS]  # that look between rows at energies and numbers
 
 
 def to_bed(**scene):
@@ -27,12 +23,12 @@ def to_bed(**scene):
     return without(press(release_pressure="0.2 MPa", hold="5 us", **scene), "stages")
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", HOSTS)
 def test_stages_end_at_the_step_at_which_the_bed_has_its_density(engine, tmp_path):
     """The plates of the frames, by the spheres that touch them: within the way of the punch in a step."""
     data = to_bed(densities=[0.6, 0.75])
     data["output"]["rows"] = 150  # far from a step
-    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    outcome = ran(data, tmp_path, engine)
     found, phases = (outcome.results.tables[name].set_index("phase") for name in ("stages", "phases"))
     step = 3.0 * outcome.plan.time_step
     assert outcome.passed and (phases["until"].drop(["hold1", "hold2"]) == "reached").all()
@@ -55,7 +51,7 @@ def test_two_punches_stop_at_the_height_between_them(engine, tmp_path):
     """Between restart files, at which the run stops for a moment."""
     data = to_bed(heights=["0.4 mm"], double_action=True)
     data["output"] |= {"rows": 150, "restarts": 7}
-    outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+    outcome = ran(data, tmp_path, engine)
     phases = outcome.results.phases.set_index("phase").loc["stage1"]
     high, low = (plate(outcome, name, phases["end"]) for name in ("punch", "floor"))
     assert 0.4e-3 - 1.01 * 3.0 * outcome.plan.time_step < high - low <= 0.4e-3 * (1 + 1e-9)
@@ -91,56 +87,14 @@ def test_a_press_that_stops_on_its_way_to_a_density_goes_on_to_the_same_tables(e
     """Between two looks the run is one, and a restart file stands at none of the rows that end a phase."""
     data = to_bed(densities=[0.75])
     data["output"] |= {"rows": 400, "restarts": 130, "loads": True}
-    tool, p = scene_engine(engine), plan(parse(data))
-    host = {x: import_module(f"epdem.engines.{engine}.{x}") for x in ("launcher", "resume", "tables")}
-    write_deck(tool, p, tmp_path)
-    host["launcher"].run("in.scene", tmp_path)
-    out = tmp_path / host["launcher"].OUT
-    held, ends = log.held(out), log.ends(out)
-    ended = p.with_ends(ends, held=held)
-    whole = host["tables"].rows(ended, out)
-    steps = [step for step in restart_steps(tmp_path) if step < held["stage1"][0]]
-    assert len(steps) > 5
-    for step in steps[1::4]:
-        host["resume"].write_resume(p, tmp_path, step)
-        host["launcher"].run("in.resume", tmp_path, append=True)
-        assert repr((log.held(out), log.ends(out))) == repr((held, ends))  # NaN is a NaN
-        pd.testing.assert_frame_equal(host["tables"].rows(ended, out), whole, check_exact=True)
-
-
-def lid(**until):
-    """A lid over a bed in a box that covers the room, and a phase with a condition."""
-    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "14 mm"]}}
-    cover = LID | {"size": ["20 mm", "20 mm"]}
-    down = {"name": "press", "duration": "0.15 s", "until": {"wall": "lid"} | until, "move": [DOWN]}
-    return parts(wall=[FLOOR, cover], fill=[bed], phase=[{"name": "fall", "duration": "31 ms"}, down])
-
-
-REFUSED = [
-    (to_bed(heights=["0.4 mm"], densities=[0.5]), "give one of stages, heights and densities"),
-    (without(press(), "stages"), "give one of stages, heights and densities"),
-    (without(press(densities=[0.7]), "stages"), "release_pressure: a press to heights or densities"),
-    (to_bed(densities=[0.7, 0.6], release=False), "densities: 0.6 is reached already"),
-    (to_bed(heights=["0.4 mm", "0.5 mm"], release=False), "heights: 0.0005 is reached already"),
-    (to_bed(densities=[1.0]), "no void would be left"),
-    (to_bed(heights=["0.31 mm"]), "no void would be left; the spheres alone are 0.0003142 m"),
-    (lid(height="4 mm") | {"scene": lid(height="4 mm")["scene"] | {"open_boundary": True}}, "lid presses no bed"),
-]
-
-
-@pytest.mark.parametrize(("data", "words"), REFUSED, ids=[words for _, words in REFUSED])
-def test_heights_that_no_plate_reaches_are_refused_in_a_sentence(data, words):
-    with pytest.raises(CaseError, match=words) as error:
-        plan(parse(data))
-    assert "\n" not in str(error.value)
+    whole, steps = assert_goes_on(plan(parse(data)), tmp_path, engine, of=slice(1, 6, 4))
+    assert sum(step < whole["phases"]["held"][0] for step in steps) > 1
 
 
 def falls(rows, until):
     """A bed that comes to rest, or that leaves the room through its open floor."""
     data = parts(wall=[BOX | {"open": ["+z", "-z"]}, *([] if "count" in until else [FLOOR])])
-    data["scene"]["phase"] = [
-        {"name": "fall", "duration": "0.4 s", "until": until | {"after": "0 s"}},
-    ]
+    data["scene"]["phase"] = [timed("fall", "0.4 s", until=until | {"after": "0 s"})]
     return data | {"output": {"rows": rows, "particles": 1}, "numerics": {"time_step": "1e-5 s"}}
 
 

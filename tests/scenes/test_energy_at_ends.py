@@ -5,16 +5,9 @@ No term is a remainder: kinetic and potential energy come from the engine's moti
 """
 
 import pytest
-from parts_cases import parts
-from scene_runs import run, write_case
+from parts_cases import bead, mm, mps, parts, timed
+from scene_runs import HOSTS, ran
 
-from engines.lammps_decks import needs_lammps
-
-HOSTS = [
-    pytest.param("liggghts", marks=pytest.mark.liggghts),
-    pytest.param("lammps", marks=needs_lammps),
-    pytest.param("yade", marks=pytest.mark.yade("module")),
-]
 ADHESION = {"work_of_adhesion": "0.2 J/m^2"}
 LAWS = {
     "thornton": {"name": "thornton"},
@@ -26,13 +19,13 @@ LIMIT = 1e-4  # of the energy that moved; without the mended term 0.02 to 1
 
 
 def body(name, x, z, **keys):
-    return {"name": name, "material": "glass", "radius": "1.5 mm", "position": [f"{x} mm", "0 mm", f"{z} mm"]} | keys
+    return bead(name, mm(x, 0, z), "1.5 mm", "glass") | keys
 
 
 def residual(data, engine, folder):
     data |= {"output": {"rows": 40, "particles": 10, "energy": True}}
     data["numerics"] = {"time_step": "2e-6 s"}
-    outcome = run(write_case(data, folder), engine, out=folder / "out")
+    outcome = ran(data, folder, engine)
     assert outcome.passed
     return outcome.results.checks.set_index("key")["value"]["energy_residual"], outcome.results
 
@@ -42,7 +35,7 @@ def residual(data, engine, folder):
 def test_works_of_overlaps_at_the_start_belong_to_the_start(law, engine, tmp_path):
     """Two spheres in each other, the lower one in the floor; friction shows what is left to it."""
     slides = {} if law in ("jkr", "thornton_ning") else {"friction": 0.3, "tangential": "partial_slip"}
-    data = parts(fill=[], body=[body("a", 0, 1.45), body("b", 0.3, 4.38)], phase=[{"name": "fall", "duration": "4 ms"}])
+    data = parts(fill=[], body=[body("a", 0, 1.45), body("b", 0.3, 4.38)], phase=[timed("fall", "4 ms")])
     found, results = residual(data | {"law": LAWS[law], "contact": slides}, engine, tmp_path)
     table = results.energy_balance
     assert abs(found) < LIMIT
@@ -56,9 +49,9 @@ def test_works_of_overlaps_at_the_start_belong_to_the_start(law, engine, tmp_pat
 @pytest.mark.parametrize("law", ["hertz", "thornton"])
 def test_cohesion_has_its_potential(law, engine, tmp_path):
     """One overlap at the start, one impact on the floor, one of two radii; some later frame has a contact."""
-    bodies = [body("a", 0, 1.45), body("b", 0.3, 4.38), body("c", 6, 1.6, velocity=["0 m/s", "0 m/s", "-0.3 m/s"])]
-    bodies += [body("d", -6, 10), body("e", -6, 12.1, radius="0.7 mm", velocity=["0 m/s", "0 m/s", "-0.1 m/s"])]
-    data = parts(fill=[], body=bodies, phase=[{"name": "fall", "duration": "4 ms"}])
+    bodies = [body("a", 0, 1.45), body("b", 0.3, 4.38), body("c", 6, 1.6, velocity=mps(0, 0, -0.3))]
+    bodies += [body("d", -6, 10), body("e", -6, 12.1, radius="0.7 mm", velocity=mps(0, 0, -0.1))]
+    data = parts(fill=[], body=bodies, phase=[timed("fall", "4 ms")])
     found, results = residual(data | {"law": {"name": law}, "contact": {"cohesion": "3e4 J/m^3"}}, engine, tmp_path)
     assert abs(found) < LIMIT
     assert results.contacts["step"].nunique() > 1
@@ -67,11 +60,11 @@ def test_cohesion_has_its_potential(law, engine, tmp_path):
 @pytest.mark.parametrize("engine", HOSTS)
 def test_a_sphere_that_leaves_takes_its_height_along(engine, tmp_path):
     """One sphere falls out through the bottom, one flies out sideways, one stays."""
-    bodies = [body("a", 0, 1), body("b", 5, 30, velocity=["2 m/s", "0 m/s", "0 m/s"]), body("c", -5, 20)]
-    data = parts(fill=[], body=bodies, phase=[{"name": "fall", "duration": "50 ms"}], wall=[], open_boundary=True)
+    bodies = [body("a", 0, 1), body("b", 5, 30, velocity=mps(2, 0, 0)), body("c", -5, 20)]
+    data = parts(fill=[], body=bodies, phase=[timed("fall", "50 ms")], wall=[], open_boundary=True)
     data["scene"]["wall"] = [
-        {"name": "plate", "kind": "plate", "axis": "z", "center": ["-5 mm", "0 mm", "10 mm"], "material": "steel"}
-        | {"size": ["8 mm", "8 mm"]}
+        {"name": "plate", "kind": "plate", "axis": "z", "center": mm(-5, 0, 10), "material": "steel"}
+        | {"size": mm(8, 8)}
     ]
     found, results = residual(data | {"law": {"name": "hertz"}}, engine, tmp_path)
     assert results.particles.groupby("step")["id"].count().iloc[[0, -1]].to_list() == [3, 1]

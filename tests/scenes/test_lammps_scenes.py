@@ -7,16 +7,18 @@ import sys
 
 import numpy as np
 import pytest
-from parts_cases import BED, CASES, FLOOR, own, parts, write_stl
-from scene_runs import assert_alike, in_hosts, run, write_case
+from parts_cases import BED, CASES, FLOOR, linear, mm, mps, own, parts, timed, vibrating, write_stl
+from scene_runs import LAMMPS, LIGGGHTS, assert_alike, in_hosts, ran, run, write_case
 from test_parts_motions import PLATE, moved
 
 from engines.lammps_decks import column, lammps, needs_lammps
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import deck as lammps_scene
-from epdem.errors import CaseError, EngineError
+from epdem.engines.liggghts.primitives import tubes
+from epdem.errors import EngineError
 from epdem.scenes.plan.plan import plan
+from epdem.scenes.plan.quantities import SPINS
 from epdem.scenes.tables.columns import last_frame
 from marks import thorough
 
@@ -43,14 +45,11 @@ def beams(tmp_path, surface_energy=None, **contact):
     """Five spheres of two materials between planes and a plate that comes down and goes up."""
     (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *BEAMS, ""]))
     down, up = ({"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", v]} for v in ("-0.3 m/s", "0.2 m/s"))
-    lid = PLATE | {"center": ["0 mm", "0 mm", "12 mm"]}
+    lid = PLATE | {"center": mm(0, 0, 12)}
     data = parts(
         wall=[FLOOR, *SIDES, lid],
         fill=[{"name": "table", "file": "spheres.csv"}],
-        phase=[
-            {"name": "down", "duration": "8 ms", "move": [down]},
-            {"name": "up", "duration": "6 ms", "move": [up], "time_step": "5e-6 s"},
-        ],
+        phase=[timed("down", "8 ms", move=[down]), timed("up", "6 ms", move=[up], time_step="5e-6 s")],
     )
     data["numerics"] = {"time_step": "1e-5 s"}
     pairs = [{"between": ["glass", "steel"], "friction": 0.4}]
@@ -101,11 +100,11 @@ def test_a_settled_bed_has_the_porosity_of_liggghts(tmp_path):
     grid = np.array([(x, y, 2e-3 + 3.5e-3 * k) for k in range(10) for x in axis for y in axis])
     rows = (f"{x!r},{y!r},{z!r},1.5e-3,glass" for x, y, z in (grid + shift).tolist())
     (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material", *rows, ""]))
-    region = {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["2 mm", "14 mm"]}
+    region = {"x": mm(-9, 9), "y": mm(-9, 9), "z": mm(2, 14)}
     data = parts(
         wall=[FLOOR, *SIDES],
         fill=[{"name": "table", "file": "spheres.csv"}],
-        phase=[{"name": "fall", "duration": "0.25 s"}],
+        phase=[timed("fall", "0.25 s")],
         measure=[{"name": "void", "kind": "porosity", "region": region}],
     )
     data |= {"contact": {"friction": 0.3}, "viscous": {"restitution": 0.4}}
@@ -144,12 +143,12 @@ def test_a_sphere_takes_the_way_of_liggghts_in_a_bowl_of_triangles_that_shakes(r
     (tmp_path / "spheres.csv").write_text(f"x,y,z,radius,material,vx,vy,vz\n{row}\n")
     bowl = next(wall for wall in own("impactor_bowl")["scene"]["wall"] if wall["kind"] == "stl")
     wall = bowl | {"file": str(CASES / "parts/bowl.stl"), "material": "steel"}
-    shake = {"wall": wall["name"], "kind": "vibrate", "amplitude": ["0.1 mm", "0 mm", "0.2 mm"], "frequency": "60 Hz"}
+    shake = vibrating(wall["name"], mm(0.1, 0, 0.2), "60 Hz")
     data = parts(
         wall=[wall],
-        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        room={axis: mm(-40, 40) for axis in "xyz"},
         fill=[{"name": "table", "file": "spheres.csv"}],
-        phase=[{"name": "shake", "duration": "30 ms", "move": [shake]}],
+        phase=[timed("shake", "30 ms", move=[shake])],
     )
     data["numerics"] = {"time_step": "2e-6 s"}
     data["contact"] = {"friction": 0.3}
@@ -197,7 +196,7 @@ def test_a_face_an_edge_and_a_corner_give_one_rebound_in_both_hosts(law, shift, 
         wall=[{"name": "tops", "kind": "stl", "file": "tops.stl", "material": "steel"}],
         room={axis: [f"{shift - 0.04!r} m", f"{shift + 0.04!r} m"] for axis in "xyz"},
         fill=[{"name": "table", "file": "spheres.csv"}],
-        phase=[{"name": "hit", "duration": "1 ms"}],
+        phase=[timed("hit", "1 ms")],
     )
     data["numerics"] = {"time_step": "2e-7 s"}
     data["law"]["name"] = law
@@ -224,12 +223,12 @@ def test_a_sphere_crosses_edges_with_friction_as_in_liggghts(kind, tmp_path):
     starts = [(-1e-4 * k, 4e-3 * k - 0.014) for k in range(8)] + [(-0.01 - 1e-5 * k, 4e-3 * k - 0.014) for k in (1, 2)]
     lines = [f"{x!r},{y!r},1.5003e-3,1.5e-3,glass,2,0.3,-0.5" for x, y in starts]
     (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *lines, ""]))
-    move = {"wall": "floor", "kind": "linear", "velocity": ["0.1 m/s", "0 m/s", "0.2 m/s"]}
+    move = linear("floor", 0.1, 0, 0.2)
     data = parts(
         wall=[{"name": "floor", "kind": "stl", "file": "floor.stl", "material": "steel"}],
-        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        room={axis: mm(-40, 40) for axis in "xyz"},
         fill=[{"name": "table", "file": "spheres.csv"}],
-        phase=[{"name": "hit", "duration": "2 ms"} | ({"move": [move]} if kind == "plate" else {})],
+        phase=[timed("hit", "2 ms") | ({"move": [move]} if kind == "plate" else {})],
     )
     data["numerics"] = {"time_step": "1e-7 s"}
     data["contact"] = {"friction": 0.3}
@@ -265,42 +264,22 @@ def test_the_meshes_of_the_cases_are_those_of_their_script(tmp_path):
         assert (tmp_path / name).read_bytes() == (CASES / "parts" / name).read_bytes()
 
 
-def turned(axis):
-    """Phases of the lid: shifted along x, then turned about `axis`."""
-    shift = {"wall": "lid", "kind": "linear", "velocity": ["1 m/s", "0 m/s", "0 m/s"]}
-    turn = {"wall": "lid", "kind": "rotate", "axis": [float(axis == name) for name in "xyz"], "rate": "1 rad/s"}
-    return [{"name": name, "duration": "1 ms", "move": [move]} for name, move in (("shift", shift), ("turn", turn))]
-
-
 def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
-    scene_engine("lammps").check(plan(parse(parts(wall=[FLOOR, PLATE], phase=turned("x")))))
-
-
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it"),
-        (
-            {"wall": [FLOOR, PLATE], "phase": turned("z")},
-            "phase.turn.move = 'rotate': a region of LAMMPS takes the axis",
-        ),
-    ],
-)
-def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence):
-    with pytest.raises(CaseError, match=sentence):
-        scene_engine("lammps").check(plan(parse(parts(**change))))
+    turn = {"wall": "lid", "kind": "rotate", "axis": [1.0, 0.0, 0.0], "rate": "1 rad/s"}
+    phases = [timed("shift", "1 ms", move=[linear("lid", 1, 0, 0)]), timed("turn", "1 ms", move=[turn])]
+    scene_engine("lammps").check(plan(parse(parts(wall=[FLOOR, PLATE], phase=phases))))
 
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
-HELD = BALL | {"name": "held", "position": ["0 mm", "0 mm", "1 mm"], "frozen": True}
-LOST = BALL | {"name": "lost", "position": ["8 mm", "0 mm", "9 mm"], "velocity": ["5 m/s", "0 m/s", "0 m/s"]}
-LATE = BALL | {"name": "late", "position": ["0 mm", "5 mm", "9 mm"], "phase": "spheres"}
+HELD = BALL | {"name": "held", "position": mm(0, 0, 1), "frozen": True}
+LOST = BALL | {"name": "lost", "position": mm(8, 0, 9), "velocity": mps(5, 0, 0)}
+LATE = BALL | {"name": "late", "position": mm(0, 5, 9), "phase": "spheres"}
 GATE = plane("gate", "z", "0 mm") | {"phases": ["spheres"]}
 
 
 def late(**scene):
     """A frozen sphere that a gate overlaps, one that leaves the room, and one that comes in the second phase."""
-    phases = [{"name": name, "duration": "4 ms"} for name in ("first", "spheres")]
+    phases = [timed(name, "4 ms") for name in ("first", "spheres")]
     return parts(wall=[GATE, PLATE], fill=[], body=[HELD, LOST, LATE], phase=phases, **scene)
 
 
@@ -311,7 +290,7 @@ def test_spheres_of_a_phase_have_a_file_of_their_own():
 
 @needs_lammps
 def test_gates_leave_frozen_spheres_where_they_are_and_ids_are_not_given_twice(tmp_path):
-    table = run(write_case(late(), tmp_path), engine="lammps", out=tmp_path / "out").results.particles
+    table = ran(late(), tmp_path, "lammps").results.particles
     held = table[table["id"] == 1]
     assert held["step"].nunique() > 2 and (held["z"] == 1e-3).all() and (held["vz"] == 0).all()
     assert {*last_frame(table)["id"]} == {1, 3}
@@ -319,17 +298,17 @@ def test_gates_leave_frozen_spheres_where_they_are_and_ids_are_not_given_twice(t
 
 def layers(low):
     """Two layers of spheres; the second falls on the first from a region that begins at `low`."""
-    regions = [BED["region"] | {"z": z} for z in (["0 mm", "14 mm"], [low, "38 mm"])]
+    regions = [BED["region"] | {"z": z} for z in (mm(0, 14), [low, "38 mm"])]
     fills = [BED | {"name": name, "region": z} for name, z in zip(("one", "two"), regions, strict=True)]
     fills[1]["phase"] = "second"
-    drop = BALL | {"name": "drop", "position": ["0 mm", "0 mm", "30 mm"], "phase": "second"}
-    phases = [{"name": name, "duration": "60 ms"} for name in ("first", "second")]
+    drop = BALL | {"name": "drop", "position": mm(0, 0, 30), "phase": "second"}
+    phases = [timed(name, "60 ms") for name in ("first", "second")]
     return parts(wall=[FLOOR, *SIDES], fill=fills, body=[drop], phase=phases)
 
 
 @needs_lammps
 def test_a_later_phase_fills_a_region_without_spheres(tmp_path):
-    outcome = run(write_case(layers("20 mm"), tmp_path), engine="lammps", out=tmp_path / "out")
+    outcome = ran(layers("20 mm"), tmp_path, "lammps")
     assert outcome.passed, outcome.results.checks
     table, rows = outcome.results.particles, outcome.results.rows
     second = outcome.results.phases.set_index("phase").loc["first", "end"]
@@ -342,7 +321,7 @@ def test_a_later_phase_fills_a_region_without_spheres(tmp_path):
 
 def test_regions_of_a_profile_are_not_named_as_a_wall():
     """A wall `a` of two cones, and a wall `a_1`."""
-    profile = [["5 mm", "0 mm"], ["8 mm", "10 mm"], ["9 mm", "20 mm"]]
+    profile = [mm(5, 0), mm(8, 10), mm(9, 20)]
     cup = {"name": "a", "kind": "revolved", "profile": profile, "material": "steel"}
     deck = lammps_scene.files(plan(parse(parts(wall=[FLOOR, cup, PLATE | {"name": "a_1"}]))))["in.scene"]
     regions = [line.split()[1] for line in deck.splitlines() if line.startswith("region ")]
@@ -352,8 +331,8 @@ def test_regions_of_a_profile_are_not_named_as_a_wall():
 def test_borders_of_ranks_that_move_change_nothing_but_the_time(tmp_path):
     """A bed in the lower half of its room, on two ranks above one another, and on one."""
     data = moved("linear") | {"numerics": {"time_step": "2e-5 s", "processors": "z", "balance": 100}}
-    data["scene"]["phase"] = [{"name": "fall", "duration": "30 ms"}]
-    data["scene"]["fill"][0]["region"]["z"] = ["0 mm", "14 mm"]
+    data["scene"]["phase"] = [timed("fall", "30 ms")]
+    data["scene"]["fill"][0]["region"]["z"] = mm(0, 14)
     data["output"] = {"rows": 30, "particles": 3, "energy": True}
     path = write_case(data, tmp_path)
     two = run(path, engine="lammps", out=tmp_path / "two", ranks=2).results
@@ -376,3 +355,103 @@ def test_every_host_says_which_numbers_it_leaves_out(key):
     for name, keys in lacks.items():
         notes = [note for note in scene_engine(name).notes(plan(parse(data))) if "left out" in note]
         assert [note.partition(":")[0] for note in notes] == [f"numerics.{key}"] * (key in keys), name
+
+
+HALF = {"x": 10, "y": 10, "z": 15}  # of the room about its middle [mm]
+MIDDLE = {"x": 0, "y": 0, "z": 13}
+
+
+def round_wall(axis, **more):
+    across = [x for x in "xyz" if x != axis]
+    center = {"x": 0.3, "y": -0.2, "z": 13.1}
+    ends = [f"{MIDDLE[axis] + sign * HALF[axis]} mm" for sign in (-1, 1)]
+    wall = {"name": "tube", "kind": "cylinder", "material": "steel", "diameter": "18 mm", "axis": axis}
+    return wall | {"from": ends[0], "to": ends[1], "center": [f"{center[x]} mm" for x in across]} | more
+
+
+def in_tube(axis, *, body, **more):
+    room = {x: [f"{MIDDLE[x] + sign * HALF[x]} mm" for sign in (-1, 1)] for x in "xyz"}
+    data = parts(wall=[round_wall(axis, **more)], room=room, fill=[], body=body, gravity="0 m/s^2")
+    data["scene"]["phase"] = [timed("fly", "8 ms")]
+    data |= {"contact": {"friction": 0.3}}
+    data["output"] = {"rows": 100, "particles": 40, "contacts": 40, "loads": True}
+    return data
+
+
+def flying(axis):
+    """Six spheres that meet the round_wall and each other."""
+    rng = np.random.default_rng(5)
+    k, body = "xyz".index(axis), []
+    for n in range(6):
+        place, velocity = np.array([MIDDLE[x] for x in "xyz"], float), rng.normal(size=3)
+        angle = 0.1 + n * np.pi / 3
+        place[[(k + 1) % 3, (k + 2) % 3]] += 6.0 * np.array([np.cos(angle), np.sin(angle)])
+        velocity[k] *= 0.2
+        body.append(
+            BALL
+            | {
+                "name": f"b{n}",
+                "position": [f"{x:.6g} mm" for x in place],
+                "velocity": [f"{v:.6g} m/s" for v in velocity],
+            }
+        )
+    return body
+
+
+@pytest.mark.parametrize("engine", [LIGGGHTS, LAMMPS])
+@pytest.mark.parametrize("axis", "xyz")
+def test_force_and_torque_on_a_tube_are_what_the_spheres_lose(engine, axis, tmp_path):
+    """Momentum and angular momentum about the origin, of the first and the last frame, in which no sphere touches."""
+    data = in_tube(axis, body=flying(axis))
+    data["scene"]["phase"][0]["duration"] = "7 ms"
+    results = ran(data, tmp_path, engine).results
+    first, last = (
+        f for _, f in results.particles.groupby("step") if f["step"].iloc[0] in (0, results.rows["step"].max())
+    )
+    lost = []
+    for frame in (first, last):
+        m, r = frame["mass"].to_numpy()[:, None], frame["radius"].to_numpy()[:, None]
+        x, v, w = (frame[[*names]].to_numpy() for names in (("x", "y", "z"), ("vx", "vy", "vz"), SPINS))
+        lost.append([(m * v).sum(axis=0), (m * np.cross(x, v) + 0.4 * m * r**2 * w).sum(axis=0)])
+    seconds = np.diff(results.rows["time"], prepend=0.0)
+    for kind, (before, after) in zip(("force", "torque"), zip(*lost, strict=True), strict=True):
+        got = np.array([(results.rows[f"tube_{kind}_{x}"] * seconds).sum() for x in "xyz"])
+        assert got == pytest.approx(before - after, abs=1e-6 * np.abs(before - after).max())
+
+
+@pytest.mark.liggghts
+def test_only_a_tube_as_long_as_the_room_that_rests_is_a_formula():
+    def found(**more):
+        return [*tubes(plan(parse(in_tube("z", body=flying("z"), **more))))]
+
+    assert found() == ["tube"]
+    for other in (
+        {"to": "20 mm"},
+        {"angular_velocity": "60 rpm"},
+        {"stress": True},
+        {"ends": ["to"]},
+        {"diameter": "5 mm"},
+    ):
+        assert found(**other) == []
+
+
+@pytest.mark.liggghts
+@pytest.mark.lammps
+def test_contacts_with_a_tube_are_those_of_lammps(tmp_path):
+    path = write_case(in_tube("y", body=flying("y")), tmp_path)
+    tables = [run(path, engine, out=tmp_path / engine).results.tables["contacts"] for engine in ("liggghts", "lammps")]
+    walls = [t[t["wall"] == "tube"].set_index(["step", "i"]).sort_index() for t in tables]
+    assert len(walls[0]) > 2 and list(walls[0].index) == list(walls[1].index)
+    for name in (
+        "overlap",
+        "delta_max",
+        "force",
+        "contact_radius",
+        "normal_x",
+        "normal_y",
+        "normal_z",
+        "force_x",
+        "force_z",
+    ):
+        one, two = (t[name].to_numpy() for t in walls)
+        assert one == pytest.approx(two, rel=1e-5, abs=1e-5 * np.abs(two).max()), name

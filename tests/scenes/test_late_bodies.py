@@ -5,25 +5,19 @@ import re
 
 import numpy as np
 import pytest
-from parts_cases import FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import FLOOR, bead, driven, flat, linear, mm, mps, parts, timed
+from scene_runs import HOSTS, ran, run, write_case
 
-from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.plan.plan import plan
 
-HOSTS = [
-    pytest.param("liggghts", marks=pytest.mark.liggghts),
-    pytest.param("lammps", marks=needs_lammps),
-    pytest.param("yade", marks=pytest.mark.yade("module")),
-]
-PHASES = [{"name": "first", "duration": "2 ms"}, {"name": "second", "duration": "2 ms"}]
+PHASES = [timed("first", "2 ms"), timed("second", "2 ms")]
 
 
 def body(name, place, **keys):
     position = [f"{x} mm" for x in place]
-    return {"name": name, "material": "glass", "radius": "1.5 mm", "position": position} | keys
+    return bead(name, position, "1.5 mm", "glass") | keys
 
 
 def free(late, first=(0, 0, 20), **scene):
@@ -35,9 +29,9 @@ def free(late, first=(0, 0, 20), **scene):
 
 @pytest.mark.parametrize("engine", HOSTS)
 def test_a_late_body_has_every_key_in_its_first_frame(engine, tmp_path):
-    motion = {"velocity": ["1 m/s", "-2 m/s", "3 m/s"], "spin": ["-50 rad/s", "500 rad/s", "7 rad/s"]}
+    motion = {"velocity": mps(1, -2, 3), "spin": ["-50 rad/s", "500 rad/s", "7 rad/s"]}
     late = body("late", (5, 0, 15), phase="second", **motion) | {"material": "steel", "radius": "0.7 mm"}
-    outcome = run(write_case(free(late), tmp_path), engine, out=tmp_path / "out")
+    outcome = ran(free(late), tmp_path, engine)
     frames = outcome.results.particles.query("id == 2")
     row = frames.iloc[0]
     flown = outcome.plan.time_at(np.array([row["step"]]))[0] - 2e-3
@@ -54,18 +48,17 @@ def test_a_late_body_in_a_sphere_ends_the_run(engine, periodic, tmp_path):
     """The first body moves into the place; in a periodic room the place is beyond a face."""
     place = (-9.7, 0, 20) if periodic else (6, 0, 20)
     data = free(body("late", place, phase="second"), (7, 0, 20), periodic=periodic)
-    data["scene"]["body"][0]["velocity"] = ["0.1 m/s", "0 m/s", "0 m/s"]
+    data["scene"]["body"][0]["velocity"] = mps(0.1, 0, 0)
     data["scene"]["wall"] = [FLOOR | {"at": "-4 mm"}]
     words = "scene.body.late.position: at the begin of phase second another sphere is there"
     if periodic:  # the first body is at 7.2 mm, and with 1 m/s at 9 mm
         assert run(write_case(data, tmp_path), engine, out=tmp_path / "apart").passed
-        data["scene"]["body"][0]["velocity"] = ["1 m/s", "0 m/s", "0 m/s"]
+        data["scene"]["body"][0]["velocity"] = mps(1, 0, 0)
     with pytest.raises(EngineError, match=words):
-        run(write_case(data, tmp_path), engine, out=tmp_path / "out")
+        ran(data, tmp_path, engine)
 
 
-LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "30 mm"], "size": ["18 mm", "18 mm"]}
-LID |= {"material": "steel"}
+LID = flat("lid", mm(0, 0, 30), mm(18, 18))
 GATE = FLOOR | {"name": "gate", "at": "10 mm"}
 
 
@@ -77,10 +70,10 @@ GATE = FLOOR | {"name": "gate", "at": "10 mm"}
         ((0, 0, 10), [GATE | {"phases": ["second"]}], [], "wall gate by 0.0015 m"),
         ((0, 0, 10), [GATE | {"phases": ["first"]}], [], None),
         ((0, 0, 29), [LID], [], "wall lid by 0.0005 m"),
-        ((0, 0, 29), [LID], [["0 m/s", "0 m/s", "-1 m/s"]], "wall lid by 0.0005 m"),  # 28 mm, below the centre
-        ((0, 0, 29), [LID], [["0 m/s", "0 m/s", "1 m/s"]], None),  # 32 mm
-        ((0, 0, 26), [LID], [["0 m/s", "0 m/s", "-1 m/s"]], None),  # 28 mm
-        ((0, 0, 27), [LID], [["0 m/s", "0 m/s", "-1 m/s"]], "wall lid by 0.0005 m"),
+        ((0, 0, 29), [LID], [mps(0, 0, -1)], "wall lid by 0.0005 m"),  # 28 mm, below the centre
+        ((0, 0, 29), [LID], [mps(0, 0, 1)], None),  # 32 mm
+        ((0, 0, 26), [LID], [mps(0, 0, -1)], None),  # 28 mm
+        ((0, 0, 27), [LID], [mps(0, 0, -1)], "wall lid by 0.0005 m"),
     ],
 )
 def test_a_late_body_in_a_wall_is_refused(place, walls, move, met):
@@ -94,8 +87,8 @@ def test_a_late_body_in_a_wall_is_refused(place, walls, move, met):
         plan(parse(data))
 
 
-PRESS = {"wall": "lid", "kind": "press", "direction": "-z", "force": "50 mN", "highest_speed": "1 m/s"}
-LINEAR = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
+PRESS = driven("lid", "-z", "50 mN", "1 m/s")
+LINEAR = linear("lid", 0, 0, -1)
 UNTIL = {"kinetic_energy": "1 J", "after": "1 ms"}  # holds at the first row after 1 ms
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import jinja2
 import pytest
+from parts_cases import mm
 from removals import removals
 from scene_runs import write_deck
 
@@ -28,9 +29,9 @@ STRAIGHT = [path for path in SCENES if "stages" not in read_toml(path)["scene"]]
 
 # The same decks with few spheres and steps; every wall is still touched.
 SMALL = {
-    "settle": {"box": ["12 mm", "12 mm", "30 mm"], "count": 70, "duration": "0.08 s"},
+    "settle": {"box": mm(12, 12, 30), "count": 70, "duration": "0.08 s"},
     "compaction": {
-        "box": ["0.5 mm", "0.5 mm", "0.8 mm"],
+        "box": mm(0.5, 0.5, 0.8),
         "count": 60,
         "height": "0.3 mm",
         "speed": "3 m/s",  # and a tenth of it back: at 3 m/s the bed, which is slower, gives no force
@@ -64,9 +65,9 @@ def small(data: dict) -> dict:
     scene = data["scene"] | SMALL[data["scene"]["kind"]]
     if "diameter" in scene and "box" in scene:  # a layer of larger spheres, in place of a round die
         del scene["diameter"]
-        scene |= {"box": ["4 mm", "4 mm"], "height": "8 mm", "count": 60, "stages": ["20 MPa", "50 MPa"]}
+        scene |= {"box": mm(4, 4), "height": "8 mm", "count": 60, "stages": ["20 MPa", "50 MPa"]}
     if "settle_time" in scene:  # finer spheres, which the plate of a wide box would not meet
-        scene |= {"settle_time": "1 ms", "box": ["0.13 mm", "0.13 mm", "0.8 mm"], "count": 46, "height": "0.3 mm"}
+        scene |= {"settle_time": "1 ms", "box": mm(0.13, 0.13, 0.8), "count": 46, "height": "0.3 mm"}
     if "phase" in scene:
         duration = f"{0.03 / len(scene['phase'])} s"
         scene |= {"phase": [phase | {"duration": duration} for phase in scene["phase"]]}

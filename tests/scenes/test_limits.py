@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an engine could not run, or would run otherwise than it is meant, is said before anything is written."""
+"""What an engine could not run, or would run otherwise than it is meant, is said before; how fast a scene gets."""
 
+import math
 import re
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import BED, CASE, FLOOR, flat, linear, mm, parts, timed
 from stored_runs import CASES
 
 from epdem.case.scene import parse
@@ -16,14 +16,7 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.scenes.judge.warnings import planned_warnings
 from epdem.scenes.plan.plan import plan
-
-
-def test_a_scene_beyond_a_limit_names_its_file_and_writes_nothing(tmp_path):
-    data = read_toml(CASES / "settle_glass.toml")
-    path = write_case(data | {"scene": data["scene"] | {"duration": "1e9 s"}}, tmp_path)
-    with pytest.raises(CaseError, match=r"case.toml: .*1e\+14 steps of 1e-05 s, at most 2e\+09") as refused:
-        run(path, out=tmp_path / "out")
-    assert "\n" not in str(refused.value) and not (tmp_path / "out").exists()
+from epdem.scenes.plan.timestep import highest_speed
 
 
 def test_a_rate_is_taken_up_to_the_layer_s_filling():
@@ -46,21 +39,9 @@ def pressed(height: float, kind: str):
     if kind == "compaction":
         data = read_toml(CASES / "compaction_powder.toml")
         return data | {"scene": data["scene"] | {"height": f"{height} mm"}}
-    down = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
-    size = {
-        "room": ["20 mm", "20 mm"],
-        "tube": ["16.4 mm", "16.4 mm"],
-        "plates": ["17 mm", "17 mm"],
-        "small": ["18 mm", "18 mm"],
-    }[kind]
-    lid = {
-        "name": "lid",
-        "kind": "plate",
-        "axis": "z",
-        "center": ["0 mm", "0 mm", "39 mm"],
-        "size": size,
-        "material": "steel",
-    }
+    down = linear("lid", 0, 0, -0.1)
+    size = {"room": mm(20, 20), "tube": mm(16.4, 16.4), "plates": mm(17, 17), "small": mm(18, 18)}[kind]
+    lid = flat("lid", mm(0, 0, 39), size)
     tube = {
         "name": "tube",
         "kind": "cylinder",
@@ -69,14 +50,9 @@ def pressed(height: float, kind: str):
         "to": "39 mm",
         "material": "steel",
     }
-    region = {"diameter": "16 mm", "z": ["0 mm", "38 mm"]}
-    phase = {
-        "name": "press",
-        "duration": "1 s",
-        "move": [down],
-        "until": {"wall": "lid", "travel": f"{39 - height} mm"},
-    }
-    floor = lid | {"name": "floor", "center": ["0 mm", "0 mm", "0 mm"]} if kind == "plates" else FLOOR
+    region = {"diameter": "16 mm", "z": mm(0, 38)}
+    phase = timed("press", "1 s", move=[down], until={"wall": "lid", "travel": f"{39 - height} mm"})
+    floor = lid | {"name": "floor", "center": mm(0, 0, 0)} if kind == "plates" else FLOOR
     if kind in ("tube", "plates"):
         return parts(wall=[floor, lid, tube], fill=[BED | {"region": region}], phase=[phase])
     return parts(wall=[FLOOR, lid], phase=[phase])
@@ -113,3 +89,45 @@ def test_a_bed_pressed_beyond_a_relative_density_of_nine_tenths_is_warned_of(kin
 
 def test_spheres_may_pass_beside_a_plate_that_does_not_cover_the_room():
     plan(parse(pressed(0.5 * SOLID["room"], "small")))
+
+
+COMMON = {"particles": [{"material": "glass", "radius": "1 mm"}], "count": 10, "walls": "steel", "duration": "1 s"}
+
+
+def scene_of(keys):
+    return parse(CASE | {"scene": COMMON | keys, "output": {}})
+
+
+def hopper(**keys):
+    lengths = {"bin_diameter": "100 mm", "bin_height": "80 mm", "outlet": "20 mm", "outlet_height": "30 mm"}
+    return scene_of({"kind": "hopper", "half_angle": "30 deg", "fill_time": "0.1 s"} | lengths | keys)
+
+
+@given(
+    st.builds(
+        lambda angle, height, drop, outlet: hopper(
+            half_angle=f"{angle} deg", bin_height=f"{height} mm", outlet_height=f"{drop} mm", outlet=f"{outlet} mm"
+        ),
+        st.floats(5, 85),
+        st.floats(20, 500),
+        st.floats(10, 500),
+        st.floats(5, 95),
+    )
+    | st.builds(lambda z: scene_of({"kind": "settle", "box": mm(50, 50, z)}), st.floats(20, 500))
+)
+def test_the_highest_speed_is_that_of_the_highest_fall(case):
+    """v = sqrt(2 g h) with h between the planned top of the filling and the planned floor."""
+    scene_of = case.parts
+    top = scene_of.random_fills[0].region.limits[5]
+    floor = next(plane.at for plane in scene_of.planes if plane.name == "floor")
+    assert highest_speed(case) == pytest.approx(math.sqrt(2 * 9.81 * (top - floor)), rel=1e-9)
+
+
+@given(st.floats(0, 20), st.floats(1, 60), st.integers(1, 5000))
+def test_the_last_shot_of_a_stream_hits_with_the_energy_of_its_fall(gravity, speed, count):
+    """v^2 = v_0^2 + 2 g h; the stream is as high as its shot goes in count/rate."""
+    keys = {"kind": "peening", "width": "10 mm", "speed": f"{speed!r} m/s", "rate": "1 kHz", "count": count}
+    case = scene_of(keys | {"gravity": f"{gravity!r} m/s^2"})
+    height = case.parts.random_fills[0].region.limits[5]
+    assert height >= speed * count / 1000
+    assert highest_speed(case) == pytest.approx(math.sqrt(speed**2 + 2 * gravity * height), rel=1e-9)

@@ -5,33 +5,29 @@ import math
 
 import numpy as np
 import pytest
-from parts_cases import BED, FLOOR, parts
-from scene_runs import restart_steps, run, write_case, write_deck
+from parts_cases import BED, FLOOR, flat, mm, mps, parts, timed
+from scene_runs import assert_goes_on, run, write_case
 
-from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
-from epdem.engines import log
-from epdem.engines.liggghts import launcher, resume
 from epdem.scenes.plan.plan import plan
 
-SIDES = {"name": "sides", "kind": "box", "x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "20 mm"]}
+SIDES = {"name": "sides", "kind": "box", "x": mm(-10, 10), "y": mm(-10, 10), "z": mm(0, 20)}
 SIDES |= {"open": ["+z", "-z"], "material": "steel"}
-LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "12 mm"], "size": ["20 mm"] * 2}
-LID |= {"material": "steel"}
+LID = flat("lid", mm(0, 0, 12), mm(20, 20))
 SOLID = 40 * 4 / 3 * np.pi * 1.5e-3**3 / 0.02**2  # height without void [m]
 MOVES = {
-    "linear": {"kind": "linear", "velocity": ["0 m/s", "0 m/s", "-2 m/s"]},
+    "linear": {"kind": "linear", "velocity": mps(0, 0, -2)},
     "press": {"kind": "press", "direction": [0.0, 0.0, -1.0], "force": "1 GN", "highest_speed": "2 m/s"},
 }
-HOLD = {"name": "hold", "duration": "1 ms"}
+HOLD = timed("hold", "1 ms")
 
 
 def pressed(kind, until=None, **output):
     """Forty spheres under a lid that moves at 2 m/s, which it does under a force that no bed reaches, too."""
-    press = {"name": "press", "duration": "10 ms", "move": [{"wall": "lid"} | MOVES[kind]]}
+    press = timed("press", "10 ms", move=[{"wall": "lid"} | MOVES[kind]])
     if until:
         press["until"] = until
-    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "11 mm"]}}
+    bed = BED | {"region": BED["region"] | {"z": mm(0, 11)}}
     data = parts(wall=[FLOOR, SIDES, LID], fill=[bed], phase=[press, HOLD])
     return data | {"output": {"rows": 50, "particles": 4, "loads": True} | output}
 
@@ -47,7 +43,7 @@ def expected_end(p, looks=1):
     return p.every * math.ceil(steps[0.012 - 2.0 * p.time_step * steps <= SOLID][0] / p.every)
 
 
-ENGINES = {"liggghts": pytest.mark.liggghts, "lammps": needs_lammps, "yade": pytest.mark.yade("module")}
+ENGINES = {"liggghts": pytest.mark.liggghts, "lammps": pytest.mark.lammps, "yade": pytest.mark.yade("module")}
 PRESSES = [("liggghts", "linear", FORCE), ("liggghts", "press", FORCE), ("liggghts", "press", None)]
 PRESSES += [
     (engine, kind, until) for engine in ("lammps", "yade") for kind, until in (("linear", FORCE), ("press", None))
@@ -74,14 +70,9 @@ def test_a_run_ends_with_a_frame_where_a_pressed_bed_has_no_void(tmp_path, engin
 
 @pytest.mark.liggghts
 def test_a_continued_press_ends_in_the_same_row(tmp_path):
-    p = write_deck(parse(pressed("linear", FORCE, restarts=50, particles=50)), tmp_path)
-    launcher.run("in.scene", tmp_path)
-    ends = log.ends(tmp_path / launcher.OUT)
-    assert ends == {"press": expected_end(p)}
-    for step in restart_steps(tmp_path)[-3:]:
-        resume.write_resume(p, tmp_path, step)
-        launcher.run("in.resume", tmp_path, append=True)
-        assert log.ends(tmp_path / launcher.OUT) == ends
+    p = plan(parse(pressed("linear", FORCE, restarts=50, particles=50)))
+    whole, _ = assert_goes_on(p, tmp_path, of=slice(-3, None))
+    assert whole["phases"]["end"].iloc[0] == expected_end(p)
 
 
 def test_a_bed_is_looked_at_only_where_the_run_tells_its_height():
@@ -94,5 +85,5 @@ def test_a_bed_is_looked_at_only_where_the_run_tells_its_height():
             data["scene"]["phase"][0]["until"] = until | ({"after": "0.1 ms"} if "force" in until else {})
         assert len(plan(parse(data)).pressed) == looked, (kind, until)
     small = pressed("press")
-    small["scene"]["wall"] = [FLOOR, SIDES, LID | {"size": ["18 mm"] * 2}]
+    small["scene"]["wall"] = [FLOOR, SIDES, LID | {"size": mm(18, 18)}]
     assert not plan(parse(small)).pressed

@@ -25,7 +25,6 @@ from other_routes import assert_coulomb, assert_forces, assert_frames, porosity
 from pydantic import BaseModel
 from scene_runs import restart_steps, run, write_case, write_deck
 
-from engines.lammps_decks import needs_lammps
 from epdem.case.keys import keys_of
 from epdem.case.scene import SceneCase, load, parse
 from epdem.engines import SCENES, scene_engine
@@ -374,7 +373,7 @@ def test_yade_runs_what_is_drawn(chosen, folder):
     assert_runs_or_names_others("yade", chosen, folder)
 
 
-@needs_lammps
+@pytest.mark.lammps
 @tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | THROUGH_FACES, ranks=2)
 @example(chosen=PLAIN | {"room": "periodic along y", "bodies": "bodies that overlap", "output": "energy"}, ranks=2)
@@ -394,7 +393,7 @@ ALIKE = SLOTS | {
 }
 
 
-@needs_lammps
+@pytest.mark.lammps
 @pytest.mark.liggghts
 @tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"dashpot": "dashpot", "walls": "open box", "phases": "wall turns", "heat": "heat"})

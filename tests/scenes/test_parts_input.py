@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes of parts from case file to plan: amounts, sizes, walls; and every mistake in one sentence with its place."""
+"""Scenes of parts from case file to plan: amounts, sizes, walls, and the masses that a fill has."""
 
 import math
 import re
@@ -10,21 +10,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from parts_cases import BED, CASES, FLOOR, own, parts, tetrahedron, write_stl
+from hypothesis import given
+from hypothesis import strategies as st
+from parts_cases import BED, CASES, FLOOR, GLASS, STEEL, bead, driven, mm, own, parts, tetrahedron, timed, write_stl
 from scipy import stats
 
 from epdem import Scene
 from epdem.case import toml
 from epdem.case.scene import load, parse
-from epdem.case.toml import error_context
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
+from epdem.scenes.judge.warnings import planned_warnings
 from epdem.scenes.plan.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep import run as study
 
 STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
-BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
+BODY = bead("ball", mm(0, 0, 20), "2 mm", "steel")
 
 
 def fills(data: dict, place: Path | str = "case") -> dict[tuple[str, float], int]:
@@ -52,9 +54,9 @@ def test_a_sieve_table_gives_the_masses_that_the_laboratory_weighed():
 )
 def test_sizes_are_distributed_as_said_between_the_limits(sizes, distribution):
     radius = sizes | {"from": "1.1 mm", "to": "1.9 mm", "classes": 4}
-    region = BED["region"] | {"z": ["0 mm", "4000 mm"]}
+    region = BED["region"] | {"z": mm(0, 4000)}
     fill = BED | {"particles": [{"material": "glass", "radius": radius}], "region": region, "count": 10_000}
-    room = {"x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "4 m"]}
+    room = {"x": mm(-10, 10), "y": mm(-10, 10), "z": ["0 mm", "4 m"]}
     numbers = fills(parts(fill=[fill], room=room))
     share = np.diff(distribution.cdf(np.array([1.1, 1.3, 1.5, 1.7, 1.9]) * 1e-3))
     expected = dict(zip((0.0012, 0.0014, 0.0016, 0.0018), 10_000 * share / share.sum(), strict=True))
@@ -83,9 +85,9 @@ def test_a_table_of_spheres_comes_before_what_is_filled_in(tmp_path):
 
 
 def test_walls_made_here_lie_where_they_are_said_to():
-    cone = {"name": "cone", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": ["4 mm", "8 mm"]}
-    box = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-8 mm", "8 mm"], "z": ["0 mm", "7 mm"]}
-    walls = [cone | {"center": ["1 mm", "10 mm"], "ends": ["to"]}, box | {"open": ["+z", "-x"]}]
+    cone = {"name": "cone", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": mm(4, 8)}
+    box = {"name": "box", "kind": "box", "x": mm(-9, 9), "y": mm(-8, 8), "z": mm(0, 7)}
+    walls = [cone | {"center": mm(1, 10), "ends": ["to"]}, box | {"open": ["+z", "-x"]}]
     found = plan(parse(parts(wall=[w | {"material": "steel"} for w in walls]))).triangles
     x, y, z = np.moveaxis(found["cone"], 2, 0)
     radius = np.hypot(x - 1e-3, z - 10e-3)
@@ -171,7 +173,7 @@ def test_an_stl_file_may_be_binary_or_a_text_in_any_encoding(tmp_path):
 def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
     write_stl(tmp_path / "wall.stl", tetrahedron(5.0))
     wall = STL | {"scale": 1e-3, "rotate": {"axis": [0.0, 0.0, 2.0], "angle": "90 deg"}, "closed": True}
-    wall |= {"position": ["1 mm", "0 mm", "2 mm"]}
+    wall |= {"position": mm(1, 0, 2)}
     mesh = plan(parse(parts(wall=[wall]), tmp_path / "case.toml")).triangles["bowl"]
     corners = {tuple(float(x) for x in np.round(c * 1e3, 9) + 0.0) for c in mesh.reshape(-1, 3)}
     assert corners == {(1, 0, 2), (1, 5, 2), (-4, 0, 2), (1, 0, 7)}  # x goes to y, y to -x
@@ -205,10 +207,10 @@ def test_a_preset_is_made_of_the_same_parts():
         {"name": name, "kind": "plane", "axis": axis, "at": f"{at} mm", "material": "glass"}
         for name, axis, at in (*planes, ("back", "y", y / 2))
     ]
-    region = {axis: [f"{-half} mm", f"{half} mm"] for axis, half in spans.items()} | {"z": ["0 mm", f"{z} mm"]}
+    region = {axis: mm(-half, half) for axis, half in spans.items()} | {"z": mm(0, z)}
     fill = {"name": "bed", "region": region, "particles": preset["scene"]["particles"], "count": 1000}
-    room = region | {"z": ["0 mm", f"{1.5 * z} mm"]}
-    phase = {"name": "settle", "duration": preset["scene"]["duration"]}
+    room = region | {"z": mm(0, 1.5 * z)}
+    phase = timed("settle", preset["scene"]["duration"])
     scene = {"kind": "parts", "room": room, "wall": wall, "fill": [fill], "phase": [phase]}
     one, other = (deck_lines(data) for data in (preset, preset | {"scene": scene}))
     only = [line for line in one ^ other if not line.startswith(("# settle:", "# parts:"))]
@@ -261,45 +263,95 @@ def test_a_copy_of_a_case_finds_its_files(tmp_path, monkeypatch):
     assert points() != before
 
 
-MISTAKES = {  # what is put in place of a line of cases/impactor_bowl.toml, and the words of the sentence
-    'kind = "cylinder"': ('kind = "cylindre"', "scene.wall.1.kind = 'cylindre', must be one of"),
-    'diameter = "40 mm"': ('diameter = "400 mm"', "scene.wall.tube: reaches beyond scene.room"),
-    'mass = "8 g"': ('weight = "8 g"', "scene.fill.0.weight = '8 g', unknown key"),
-    'radius = "4 mm"': ('radius = "-4 mm"', "scene.body.0.radius = '-4 mm', must lie in"),
-    'phase = "hit"': ('phase = "hid"', "scene: body.impactor.phase = 'hid' is no phase"),
-    'duration = "0.1 s"': (
-        'duration = "0.1 s"\n[[scene.phase.move]]\nwall = "bowl"\n[[scene.phase.move]]\nkind = "spin"',
-        "scene.phase.1.move.0.kind is missing",
-    ),
-    "\nfriction = 0.3": ("\nfriction = -0.3", "contact.friction = -0.3, must lie in"),
-    "[contact]": ("[contacts]", "contacts: unknown key"),
-    "[[scene.body]]": ("[[scene.bodies]]", "scene.bodies: unknown key"),
-    '[materials.steel]\nyoung_modulus = "100 MPa"': (
-        "[materials.steel]",
-        "materials.steel.young_modulus is missing",
-    ),
-}
-
-
-@pytest.mark.parametrize("old", MISTAKES)
-def test_the_message_of_a_mistake_in_a_part_begins_with_file_and_key(old, tmp_path):
-    text = (CASES / "impactor_bowl.toml").read_text()
-    new, words = MISTAKES[old]
-    (tmp_path / "parts").symlink_to(CASES / "parts")
-    path = tmp_path / "bowl.toml"
-    path.write_text(text.replace(old, new))
-    with pytest.raises(CaseError, match=re.escape(f"bowl.toml: {words}")), error_context(path):
-        plan(load(path))
-
-
 @pytest.mark.parametrize(("side", "vector"), [("-z", [0.0, 0.0, -1.0]), ("+x", [1.0, 0.0, 0.0])])
 def test_a_direction_is_a_side_or_a_vector(side, vector):
     def case_with(direction):
-        lid = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "39 mm"], "material": "steel"}
-        press = {"wall": "lid", "kind": "press", "direction": direction, "force": "1 N", "highest_speed": "0.1 m/s"}
+        lid = {"name": "lid", "kind": "plate", "axis": "z", "center": mm(0, 0, 39), "material": "steel"}
+        press = driven("lid", direction, "1 N", "0.1 m/s")
         flow = {"name": "out", "kind": "flow", "direction": direction, "at": "1 mm"}
-        phase = {"name": "press", "duration": "20 ms", "move": [press]}
-        return parse(parts(wall=[FLOOR, lid | {"size": ["2 mm", "2 mm"]}], phase=[phase], measure=[flow])).scene
+        phase = timed("press", "20 ms", move=[press])
+        return parse(parts(wall=[FLOOR, lid | {"size": mm(2, 2)}], phase=[phase], measure=[flow])).scene
 
     assert case_with(side) == case_with(vector)
     assert case_with(side).phase[0].move[0].direction == vector and case_with(side).measure[0].direction == side
+
+
+DENSITY = {"glass": 2500.0, "steel": 7800.0}
+SETTLE = {"kind": "settle", "box": mm(40, 40, 40), "count": 12, "duration": "20 ms", "walls": "steel"}
+
+
+def ball(material, radius):
+    return DENSITY[material] * 4 / 3 * math.pi * radius**3
+
+
+def filled(particles, **amount):
+    bed = {key: value for key, value in BED.items() if key != "count"}
+    return parts(fill=[bed | {"particles": particles} | amount])
+
+
+def component(material, radius, share):
+    return {"material": material, "radius": radius if isinstance(radius, dict) else f"{radius!r} m", "share": share}
+
+
+@given(
+    share=st.floats(0.01, 0.99),
+    radii=st.tuples(st.floats(0.2e-3, 3e-3), st.floats(0.2e-3, 3e-3)),
+    mass=st.floats(1e-6, 3e-4),
+)
+def test_a_fill_by_mass_has_the_mass_of_every_component_or_says_so(share, radii, mass):
+    """Independent count: mass of a component over the mass of one of its spheres."""
+    wanted = {"glass": share * mass, "steel": (1.0 - share) * mass}
+    numbers = {m: wanted[m] / ball(m, r) for m, r in zip(wanted, radii, strict=True)}
+    data = filled([component("glass", radii[0], share), component("steel", radii[1], 1.0 - share)], mass=f"{mass!r} kg")
+    try:
+        p = plan(parse(data))
+    except CaseError as error:
+        assert (min(numbers.values()) < 1.0 and "one sphere" in str(error)) or "would fill" in str(error)
+        return
+    filled_in = [(f.particles[0], f.count) for f in p.insertions]
+    got = {m: sum(n * ball(m, x.radius) for x, n in filled_in if x.material == m) for m in wanted}
+    assert min(got.values()) > 0.0
+    wrong = any(abs(got[m] - wanted[m]) > 0.01 * mass for m in wanted)
+    assert wrong == any("requested" in said for said in planned_warnings(p))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_component_below_half_a_sphere_is_refused(first):
+    rare = component("steel", 2e-3, 0.1)  # 0.26 g, and 10 % of 0.6 g are requested
+    both = [component("glass", 1e-3, 0.9), rare]
+    with pytest.raises(CaseError, match=rf"scene.fill.bed.particles.{1 - first}: .* is 0.23 of one sphere of steel"):
+        plan(parse(filled(both[::-1] if first else both, mass="0.6 g")))
+
+
+@pytest.mark.parametrize("kind", ["parts", "poured", "settle"])
+def test_a_size_below_half_a_sphere_is_named(kind, tmp_path):
+    (tmp_path / "sieve.csv").write_text("opening [mm],retained [%]\n6,0\n4,2\n1,98\n")
+    sieve = [component("glass", {"sieve": "sieve.csv"}, 1.0)]  # 5 mm: 1 sphere for 388 of 2.5 mm
+    data = filled(sieve, count=12)
+    if kind == "poured":
+        data = filled(sieve, count=12, rate="1000 Hz")
+    elif kind == "settle":
+        data = filled(sieve, count=12) | {"scene": SETTLE | {"particles": sieve}}
+        data["output"] = {"rows": 10, "particles": 2}
+    said = planned_warnings(plan(parse(data, tmp_path / "case.toml")))
+    place = "scene.particles.0" if kind == "settle" else "scene.fill.bed.particles.0"
+    assert any(s.startswith(f"{place}: 0 spheres with radius 0.0025 m") for s in said)
+    assert GLASS != STEEL
+
+
+@pytest.mark.parametrize("kind", ["compaction", "drum", "hopper", "settle", "peening"])
+def test_mixtures_of_a_kind_have_exact_numbers(kind):
+    """Numbers in the ratio of share over the mass of a sphere, whole, of their given sum, with every seed."""
+    names = {"compaction": "compaction_powder", "drum": "drum_beads", "hopper": "hopper_beads"}
+    data = own(names.get(kind, {"settle": "settle_glass", "peening": "peening_steel"}.get(kind, "")))
+    material = data["scene"]["particles"][0]["material"]
+    radius = parse(data).parts.filled[0].radii()[1]
+    shares = {radius: 0.37, 0.7 * radius: 0.5, 0.5 * radius: 0.13}
+    data["scene"]["particles"] = [component(material, r, share) for r, share in shares.items()]
+    data["scene"]["count"] = 101
+    weights = {r: share / r**3 for r, share in shares.items()}
+    wanted = {r: 101 * w / sum(weights.values()) for r, w in weights.items()}
+    p = plan(parse(data))
+    found = {f.particles[0].radius: f.count for f in p.insertions}
+    assert all(len(f.particles) == 1 for f in p.insertions) and sum(found.values()) == 101
+    assert all(abs(found[r] - n) < 1 for r, n in wanted.items())

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import BED, FLOOR, bead, mm, mps, parts, timed
+from scene_runs import ran, run, write_case
 
 from epdem.case.scene import parse
 from epdem.cli.options import answer
@@ -27,7 +27,7 @@ from epdem.studies.fit import fit
 from epdem.studies.sweep import run as study
 from epdem.studies.sweep.table import numbers_of
 
-ROOM = {"x": ["-2 mm", "2 mm"], "y": ["-2 mm", "2 mm"], "z": ["0 mm", "8 mm"]}
+ROOM = {"x": mm(-2, 2), "y": mm(-2, 2), "z": mm(0, 8)}
 
 
 def planned(*wanted: dict, **output: object):
@@ -57,7 +57,7 @@ def test_spheres_are_counted_and_weighed_where_their_centres_are():
     assert curve({"kind": "count", "region": ROOM}, spheres(0, places)) == [2.0]
     assert curve({"kind": "mass", "region": ROOM}, spheres(0, places)) == [pytest.approx(4e-6)]
     assert curve({"kind": "count", "material": "glass"}, spheres(0, places, kind=2)) == [0.0]
-    upright = {"diameter": "7 mm", "z": ["0 mm", "8 mm"]}
+    upright = {"diameter": "7 mm", "z": mm(0, 8)}
     assert curve({"kind": "count", "region": upright}, spheres(0, places)) == [3.0]
 
 
@@ -191,7 +191,7 @@ def test_porosity_is_what_spheres_leave_of_a_region():
     grid = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (1, 3, 5, 7)]) * 1e-3
     simple_cubic = 1 - math.pi / 6
     assert curve({"kind": "porosity", "region": ROOM}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=1e-4)]
-    half = ROOM | {"z": ["0 mm", "1 mm"]}  # cuts spheres through their centres
+    half = ROOM | {"z": mm(0, 1)}  # cuts spheres through their centres
     assert curve({"kind": "porosity", "region": half}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=1e-4)]
 
 
@@ -203,11 +203,7 @@ def test_porosity_is_exact_to_a_ten_thousandth(seed, overlap, upright):
     way = rng.normal(size=3)
     first = rng.uniform(-0.3e-3, 0.3e-3, 3) + np.array([0, 0, 4e-3])
     places = np.array([first, first + (2 - overlap) * r * way / np.linalg.norm(way)])
-    region = (
-        {"diameter": "8 mm", "z": ["0 mm", "8 mm"]}
-        if upright
-        else ROOM | {"x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"]}
-    )
+    region = {"diameter": "8 mm", "z": mm(0, 8)} if upright else ROOM | {"x": mm(-4, 4), "y": mm(-4, 4)}
     volume = math.pi * 4e-3**2 * 8e-3 if upright else 8e-3**3
     h = overlap * r / 2  # of each cap of the lens
     lens = 2 * math.pi * h**2 * (r - h / 3)
@@ -271,8 +267,8 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
         {"name": "dents", "kind": "plastic_work", "bins": 5},
         {"name": "speeds", "kind": "impact_speed", "bins": 5},
     ]
-    data = parts(measure=wanted, wall=[FLOOR], fill=[BED], periodic=True, phase=[{"name": "fall", "duration": "0.1 s"}])
-    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    data = parts(measure=wanted, wall=[FLOOR], fill=[BED], periodic=True, phase=[timed("fall", "0.1 s")])
+    outcome = ran(data, tmp_path)
     found, spheres_then = outcome.results, outcome.results.particles
     assert found.measures["top"].to_list() == spheres_then.groupby("step")["z"].max().to_list()
     assert found.rows["pressed"].to_list() == found.rows["floor_force_z"].to_list() and found.rows["pressed"].min() < 0
@@ -298,8 +294,8 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
 @pytest.mark.liggghts
 def test_a_measure_is_a_target_with_its_unit(tmp_path):
     """The mass in a region at rest gives the density: m = 8 beads of 4/3 pi R^3 rho; a sweep has the same column."""
-    mass = {"name": "held", "kind": "mass", "region": {"diameter": "16 mm", "z": ["0 mm", "40 mm"]}}
-    data = parts(fill=[BED | {"count": 8}], measure=[mass], phase=[{"name": "fall", "duration": "2 ms"}])
+    mass = {"name": "held", "kind": "mass", "region": {"diameter": "16 mm", "z": mm(0, 40)}}
+    data = parts(fill=[BED | {"count": 8}], measure=[mass], phase=[timed("fall", "2 ms")])
     data["output"] = {"rows": 2, "particles": 2}
     one = 8 * 4 / 3 * math.pi * 1.5e-3**3
     free = {"materials.glass.density": "1000 kg/m^3..4000 kg/m^3"}
@@ -336,9 +332,9 @@ def test_a_force_has_a_value_in_every_row_and_its_peak_counts():
 @pytest.mark.parametrize("frames", [0, 1])
 def test_a_force_needs_no_frames_and_is_a_target(frames, tmp_path, capsys):
     """A ball that lands and leaves between two frames presses the floor, by its density: a sweep and a fit see it."""
-    ball = {"name": "ball", "material": "glass", "radius": "1.5 mm", "position": ["0 mm", "0 mm", "1.6 mm"]}
-    data = parts(fill=[], body=[ball | {"velocity": ["0 m/s", "0 m/s", "-0.5 m/s"]}], measure=[LIFT])
-    data["scene"]["phase"] = [{"name": "fall", "duration": "2 ms"}]
+    ball = bead("ball", mm(0, 0, 1.6), "1.5 mm", "glass")
+    data = parts(fill=[], body=[ball | {"velocity": mps(0, 0, -0.5)}], measure=[LIFT])
+    data["scene"]["phase"] = [timed("fall", "2 ms")]
     data |= {"output": {"rows": 40, "particles": frames}, "numerics": {"time_step": "2e-6 s"}}
     path = write_case(data, tmp_path)
     outcome = run(path, out=tmp_path / "once")

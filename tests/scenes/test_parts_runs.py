@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes of parts in LIGGGHTS: what is filled in, what walls bear, what single spheres do."""
+"""Scenes of parts in LIGGGHTS: what is filled in, what walls bear, what single spheres do, which leave the room."""
 
 import math
 
 import numpy as np
 import pytest
-from parts_cases import BED, CASES, FLOOR, own, parts
-from scene_runs import run, write_case
+from parts_cases import BED, CASES, FLOOR, bead, mm, mps, own, parts, timed
+from scene_runs import ran, run
 
 pytestmark = pytest.mark.liggghts
 
@@ -17,7 +17,7 @@ def sieved(shared):
     data = own("sieve_cylinder")
     data["scene"]["fill"][0]["particles"][0]["radius"]["sieve"] = str(CASES / "parts/sieve.csv")
     data["numerics"] = {"time_step": "2e-5 s"}
-    folder = shared("sieved", lambda folder: run(write_case(data, folder), out=folder / "out"))
+    folder = shared("sieved", lambda folder: ran(data, folder))
     return run(folder / "case.toml", out=folder / "out")
 
 
@@ -47,7 +47,7 @@ def test_the_energy_of_a_scene_with_an_stl_wall_and_an_impactor_closes(tmp_path)
     data["scene"]["wall"][0]["file"] = str(CASES / "parts/bowl.stl")
     for phase, duration in zip(data["scene"]["phase"], ("40 ms", "30 ms"), strict=True):
         phase["duration"] = duration
-    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    outcome = ran(data, tmp_path)
     balance, spheres = outcome.results.energy_balance, outcome.results.particles
     assert outcome.passed, outcome.results.checks
     came = spheres[spheres["radius"] > 3e-3]
@@ -58,23 +58,16 @@ def test_the_energy_of_a_scene_with_an_stl_wall_and_an_impactor_closes(tmp_path)
 
 def test_spheres_of_a_table_begin_where_it_says_and_frozen_ones_stay(tmp_path):
     (tmp_path / "s.csv").write_text("x,y,z,radius,material,vz\n0,0,0.03,0.001,glass,-1\n0.004,0,0.01,0.002,steel,0.5\n")
-    held = {
-        "name": "held",
-        "material": "steel",
-        "radius": "2 mm",
-        "position": ["0 mm", "0 mm", "20 mm"],
-        "frozen": True,
-    }
-    late = {"name": "late", "material": "glass", "radius": "1 mm", "position": ["-5 mm", "5 mm", "20 mm"]}
-    late |= {"velocity": ["0.2 m/s", "0 m/s", "0 m/s"], "phase": "second"}
+    held = bead("held", mm(0, 0, 20), "2 mm", "steel", frozen=True)
+    late = bead("late", mm(-5, 5, 20), "1 mm", "glass", velocity=mps(0.2, 0, 0), phase="second")
     gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["first"]}
     scene = {
         "wall": [FLOOR, gate],
         "fill": [{"name": "table", "file": "s.csv"}],
         "body": [held, late],
-        "phase": [{"name": "first", "duration": "20 ms"}, {"name": "second", "duration": "20 ms"}],
+        "phase": [timed("first", "20 ms"), timed("second", "20 ms")],
     }
-    results = run(write_case(parts(**scene), tmp_path), out=tmp_path / "out").results
+    results = ran(parts(**scene), tmp_path).results
     frames = dict(tuple(results.particles.groupby("step")))
     start, end = frames[0].set_index("id"), frames[max(frames)].set_index("id")
     columns = ["x", "y", "z", "vx", "vy", "vz", "radius"]
@@ -90,11 +83,46 @@ def test_spheres_of_a_table_begin_where_it_says_and_frozen_ones_stay(tmp_path):
 
 def test_a_gate_holds_what_falls_until_its_phase_ends(tmp_path):
     gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["first"]}
-    phases = [{"name": "first", "duration": "0.1 s"}, {"name": "second", "duration": "30 ms"}]
-    region = BED["region"] | {"z": ["6 mm", "30 mm"]}
+    phases = [timed("first", "0.1 s"), timed("second", "30 ms")]
+    region = BED["region"] | {"z": mm(6, 30)}
     data = parts(wall=[gate, FLOOR], fill=[BED | {"region": region}], phase=phases, open_boundary=True)
-    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    outcome = ran(data, tmp_path)
     lowest = outcome.results.particles.groupby("step").apply(lambda x: (x["z"] - x["radius"]).min())
     opened = outcome.plan.phases[0].end
     assert lowest[lowest.index <= opened].min() > 4.9e-3
     assert lowest.iloc[-1] < 3e-3
+
+
+STRAY = bead("stray", mm(0, 0, 20), "1 mm", "glass", velocity=mps(1.1, 0, 0))  # leaves at x = 10 mm after 9.1 ms
+CALM = bead("calm", mm(-5, 0, 1), "1 mm", "glass")
+
+
+def lost_outcome(folder, *, particles=10, **scene):
+    data = parts(wall=[FLOOR], fill=[], gravity="0 m/s^2") | {"output": {"rows": 20, "particles": particles}}
+    data["scene"] |= {"body": [CALM, STRAY], **scene}
+    return ran(data, folder)
+
+
+def test_a_lost_sphere_is_named_with_its_last_place_and_time_also_of_a_stored_run(tmp_path):
+    first, again = lost_outcome(tmp_path), lost_outcome(tmp_path)
+    assert again.reused and again.warnings == first.warnings and not first.passed
+    (said,) = [w for w in first.warnings if "left the room" in w]
+    assert "1 spheres have left the room, the first between 0.009 s and 0.01 s, sphere 2 (last at (0.0088" in said
+    assert said.endswith("close the walls, enlarge scene.room, or give scene.open_boundary = true")
+
+
+def test_without_frames_the_rows_tell_when(tmp_path):
+    said = [w for w in lost_outcome(tmp_path, particles=0).warnings if "left the room" in w or "left the" in w]
+    assert len(said) == 1 and "1 spheres have left the room, the first between 0.0" in said[0]
+
+
+def test_many_are_counted(tmp_path):
+    row = [STRAY | {"name": f"s{y}", "position": mm(0, y, 20)} for y in (0, 3, 6, 9)]
+    (said,) = [w for w in lost_outcome(tmp_path, body=[CALM, *row]).warnings if "left the room" in w]
+    assert said.startswith("scene: 4 spheres have left the room, the first between ") and "sphere 4 (" in said
+    assert said.count("sphere ") == 3
+
+
+@pytest.mark.parametrize("scene", [{"open_boundary": True}, {"periodic": True}])
+def test_an_open_or_periodic_room_loses_nothing_that_is_said(scene, tmp_path):
+    assert not [w for w in lost_outcome(tmp_path, **scene).warnings if "left the" in w]

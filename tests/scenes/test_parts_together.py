@@ -4,8 +4,8 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import BED, FLOOR, driven, mm, parts, timed
+from scene_runs import ran, run, write_case
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
@@ -13,9 +13,9 @@ from epdem.scenes.judge.measures import curves
 from epdem.scenes.plan.plan import plan
 
 TUBE = {"name": "tube", "kind": "cylinder", "from": "-1 mm", "to": "39 mm", "diameter": "16 mm", "material": "steel"}
-PRESS = {"wall": "tube", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "0.1 N", "highest_speed": "0.1 m/s"}
-REGION = {"diameter": "12 mm", "z": ["1 mm", "30 mm"]}
-FIRST, SECOND = {"name": "first", "duration": "2 ms"}, {"name": "second", "duration": "2 ms"}
+PRESS = driven("tube", [0.0, 0.0, -1.0], "0.1 N", "0.1 m/s")
+REGION = {"diameter": "12 mm", "z": mm(1, 30)}
+FIRST, SECOND = timed("first", "2 ms"), timed("second", "2 ms")
 
 
 def scene(*, wall, phase=(FIRST, SECOND), **more):
@@ -34,7 +34,7 @@ def scene(*, wall, phase=(FIRST, SECOND), **more):
             "angular_velocity": st.just("60 rpm"),
             "wear": st.just("1e-9 m^2/N"),
             "stress": st.just(True),
-            "center": st.just(["1 mm", "0 mm"]),
+            "center": st.just(mm(1, 0)),
         },
     ),
     pressed=st.booleans(),
@@ -49,7 +49,7 @@ def test_a_round_wall_turns_wears_bears_and_is_pressed(wall, pressed, loads, tmp
             plan(parse(data))
         return
     folder = tmp_path_factory.mktemp("wall")
-    assert run(write_case(data, folder), out=folder / "out").results.rows["particles"].iloc[-1] == 8
+    assert ran(data, folder).results.rows["particles"].iloc[-1] == 8
 
 
 @pytest.mark.liggghts
@@ -67,13 +67,6 @@ def test_spheres_may_come_with_a_later_phase_and_pass_a_plane_or_never_be_in_a_f
 def test_a_flow_without_a_sphere_in_any_frame_is_zero(tmp_path):
     """As of a run whose spheres leave the room before the first frame."""
     flow = {"name": "down", "kind": "flow", "direction": "-z", "at": "5 mm"}
-    outcome = run(write_case(scene(wall={}, measure=[flow]), tmp_path), out=tmp_path / "out")
+    outcome = ran(scene(wall={}, measure=[flow]), tmp_path)
     empty = outcome.results.tables | {"particles": outcome.results.particles.iloc[:0]}
     assert not curves(outcome.plan, empty)["down"].any()
-
-
-def test_the_energy_balance_needs_frames():
-    data = scene(wall={})
-    data["output"] = {"rows": 4, "particles": 0, "energy": True}
-    with pytest.raises(CaseError, match=r"the energy balance is taken from the frames; give output.particles"):
-        parse(data)

@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import BED, FLOOR, flat, mm, parts, timed
+from scene_runs import HOSTS, ran, run, write_case
 
-from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError, EngineError
@@ -21,11 +20,6 @@ from epdem.scenes.plan.plan import plan
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
 SIZE = 20e-3  # of the room along x and y [m]
-HOSTS = [
-    pytest.param("liggghts", marks=pytest.mark.liggghts),
-    pytest.param("lammps", marks=needs_lammps),
-    pytest.param("yade", marks=pytest.mark.yade("module")),
-]
 
 
 def ball(name: str, *place: float) -> dict:
@@ -38,7 +32,7 @@ def periodic(**scene: object) -> dict:
 
 def test_porosity_counts_the_part_of_a_sphere_that_reaches_through_a_face():
     """A sphere on an upright edge of the room lies with a quarter at each of the four edges."""
-    region = {"x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "10 mm"]}
+    region = {"x": mm(-10, 10), "y": mm(-10, 10), "z": mm(0, 10)}
     p = plan(parse(periodic(measure=[{"name": "void", "kind": "porosity", "region": region}])))
     rows = pd.DataFrame({"step": [0], "particles": [1]})
     for place in ([-10e-3, -10e-3], [10e-3, 10e-3], [10.2e-3, 3e-3], [0.0, -9e-3], [0.0, 0.0]):
@@ -48,8 +42,7 @@ def test_porosity_counts_the_part_of_a_sphere_that_reaches_through_a_face():
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
-    [((-9.9, 0, 5), (9.9, 0, 5)), ((10, 0, 5), (-10, 0, 5)), ((9.5, -9.5, 5), (-9.7, 9.4, 5.1))],
+    ("one", "other"), [((-9.9, 0, 5), (9.9, 0, 5)), ((10, 0, 5), (-10, 0, 5)), ((9.5, -9.5, 5), (-9.7, 9.4, 5.1))]
 )
 def test_spheres_that_lie_in_each_other_through_a_face_are_refused(one, other):
     bodies = [ball("a", *one), ball("b", *other)]
@@ -63,7 +56,7 @@ def test_spheres_that_lie_in_each_other_through_a_face_are_refused(one, other):
 
 
 def test_a_fill_leaves_the_place_of_a_body_beyond_a_face():
-    region = {"x": ["6 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "12 mm"]}
+    region = {"x": mm(6, 10), "y": mm(-10, 10), "z": mm(0, 12)}
     bodies = [ball(f"b{n}", -10 + 1e-3 * n, y, z) for n, (y, z) in enumerate(itertools.product((-5, 0, 5), (3, 7, 11)))]
     data = periodic(fill=[BED | {"region": region, "count": 6}], body=bodies)
     for seed in range(1, 6):
@@ -75,20 +68,12 @@ def test_a_fill_leaves_the_place_of_a_body_beyond_a_face():
 
 
 def plate(name: str, axis: str, at: str) -> dict:
-    center = ["0 mm", "0 mm", "12 mm"]
+    center = mm(0, 0, 12)
     center["xyz".index(axis)] = at
-    return {
-        "name": name,
-        "kind": "plate",
-        "axis": axis,
-        "center": center,
-        "size": ["8 mm", "8 mm"],
-        "material": "steel",
-    }
+    return flat(name, center, mm(8, 8), axis=axis)
 
 
-BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "5 mm"], "y": ["-5 mm", "5 mm"], "z": ["1 mm", "9 mm"]}
-BOX |= {"material": "steel"}
+BOX = {"name": "box", "kind": "box", "x": mm(-9, 5), "y": mm(-5, 5), "z": mm(1, 9), "material": "steel"}
 PLANE = {"name": "side", "kind": "plane", "axis": "x", "at": "0 mm", "material": "steel"}
 
 
@@ -130,9 +115,7 @@ def beds(axis: str) -> dict:
     walls = [
         PLANE | {"name": f"w{n}", "axis": "xy".replace(axis, ""), "at": at} for n, at in enumerate(("-9 mm", "9 mm"))
     ]
-    data = periodic(
-        periodic=axis, wall=[FLOOR, *walls], fill=[], body=bodies, phase=[{"name": "fall", "duration": "6 ms"}]
-    )
+    data = periodic(periodic=axis, wall=[FLOOR, *walls], fill=[], body=bodies, phase=[timed("fall", "6 ms")])
     return data | {"contact": {"friction": 0.3}, "output": {"rows": 20, "particles": 5, "contacts": 5}}
 
 
@@ -156,16 +139,14 @@ def narrow(copies: int) -> dict:
     for n in range(copies):
         spin = {"spin": ["0 rad/s", "0 rad/s", "300 rad/s"]}
         bodies += [ball(f"a{n}", 0.8 + 5.9 * n, 0, 5) | spin, ball(f"b{n}", 3.75 + 5.9 * n, 0.3, 5)]
-    room = {"x": ["0 mm", f"{5.9 * copies} mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "10 mm"]}
-    data = periodic(
-        periodic="x", room=room, wall=[], fill=[], body=bodies, phase=[{"name": "fall", "duration": "1 ms"}]
-    )
+    room = {"x": mm(0, 5.9 * copies), "y": mm(-10, 10), "z": mm(0, 10)}
+    data = periodic(periodic="x", room=room, wall=[], fill=[], body=bodies, phase=[timed("fall", "1 ms")])
     data["scene"]["gravity"] = "0 m/s^2"
     data["numerics"] |= {"time_step": "2e-6 s", "highest_speed": "1 m/s"}
     return data | {"contact": {"friction": 0.3}, "output": {"rows": 10, "particles": 5}}
 
 
-@needs_lammps
+@pytest.mark.lammps
 def test_a_narrow_periodic_room_is_refused_where_a_host_mixes_images_and_runs_in_lammps(tmp_path):
     for engine, least in (("liggghts", 0.0075), ("yade", 0.00752)):  # 2.5 diameters; skins have two digits
         with pytest.raises(Unsupported, match=rf"scene.room.x: .* after 0.0059 m, at least {least:g} m "):
@@ -186,9 +167,9 @@ def test_a_narrow_periodic_room_is_refused_where_a_host_mixes_images_and_runs_in
 @pytest.mark.liggghts
 def test_a_wall_too_long_for_a_narrow_periodic_room_says_what_to_change(tmp_path):
     """LIGGGHTS's search for the corners of meshes fails at 11 periods; its own words are those of an assertion."""
-    room = {"x": ["-60 mm", "60 mm"], "y": ["-5 mm", "5 mm"], "z": ["-20 mm", "90 mm"]}
-    belt = {"name": "belt", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "-10 mm"], "material": "steel"}
-    bed = BED | {"region": {"x": ["-9 mm", "9 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "30 mm"]}, "count": 5}
-    scene = parts(room=room, periodic="y", wall=[belt | {"size": ["110 mm", "10 mm"]}], fill=[bed])
+    room = {"x": mm(-60, 60), "y": mm(-5, 5), "z": mm(-20, 90)}
+    belt = {"name": "belt", "kind": "plate", "axis": "z", "center": mm(0, 0, -10), "material": "steel"}
+    bed = BED | {"region": {"x": mm(-9, 9), "y": mm(-4, 4), "z": mm(0, 30)}, "count": 5}
+    scene = parts(room=room, periodic="y", wall=[belt | {"size": mm(110, 10)}], fill=[bed])
     with pytest.raises(EngineError, match="a triangle of a wall is many times longer than a period of the room"):
-        run(write_case(scene, tmp_path), out=tmp_path / "out")
+        ran(scene, tmp_path)

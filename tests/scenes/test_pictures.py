@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
-from parts_cases import BED, parts
+from parts_cases import BED, bead, linear, mm, parts, timed
 from stored_runs import STORED, planned
 from test_start_and_paths import PLATE
 
@@ -90,14 +90,8 @@ def test_a_sphere_has_a_dark_rim_and_a_highlight_and_fades_with_its_distance():
 
 
 def test_a_picture_before_the_run_has_the_spheres_that_can_be_placed(tmp_path):
-    ball = {
-        "name": "ball",
-        "material": "steel",
-        "radius": "2 mm",
-        "position": ["0 mm", "0 mm", "20 mm"],
-        "phase": "more",
-    }
-    phases = [{"name": "fall", "duration": "20 ms"}, {"name": "more", "duration": "20 ms"}]
+    ball = bead("ball", mm(0, 0, 20), "2 mm", "steel", phase="more")
+    phases = [timed("fall", "20 ms"), timed("more", "20 ms")]
     p = plan(parse(parts(body=[ball], phase=phases)))
     assert pictures.before(p, tmp_path / "a.png") == 41
     assert plt.imread(tmp_path / "a.png").shape[1] == 1200
@@ -119,7 +113,7 @@ def test_translation_and_spin_are_counted_apart():
 
 def test_the_time_of_the_bed_counts_the_steps_of_each_phase(tmp_path):
     """1000 steps of 2e-5 s and 1000 of 1e-5 s."""
-    phases = [{"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration": "10 ms", "time_step": "1e-5 s"}]
+    phases = [timed("fall", "20 ms"), timed("rest", "10 ms", time_step="1e-5 s")]
     p = plan(parse(parts(phase=phases)))
     still = dict.fromkeys(("x", "y", "vx", "vy", "vz"), 0.0)
     frame = pd.DataFrame({"step": [p.steps], "z": 1e-3, "radius": 1e-3, "mass": 1e-5} | still)
@@ -131,8 +125,8 @@ def test_a_wall_is_drawn_where_it_is_in_the_last_frame(tmp_path, monkeypatch):
     """A plate sinks 2 mm in a phase of 20 ms; the frame at half of it shows 1 mm."""
     shown = []
     monkeypatch.setattr(pictures, "_draw_walls", lambda axis, walls, front: shown.append(walls[0][0]))
-    move = {"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
-    phase = {"name": "sink", "duration": "20 ms", "move": [move]}
+    move = linear("plate", 0, 0, -0.1)
+    phase = timed("sink", "20 ms", move=[move])
     p = plan(parse(parts(wall=[PLATE], fill=[BED], phase=[phase])))
     ball = {"id": 1, "type": 1, "radius": 2e-3, "mass": 1e-5, **dict.fromkeys(("x", "y", "z", "vx", "vy", "vz"), 0.0)}
     pictures.bed(p, pd.DataFrame([{"step": 0} | ball, {"step": p.steps // 2} | ball]), tmp_path / "bed.png")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""An interrupted bulk run goes on from its last restart file; Ctrl-C leaves no process behind."""
+"""An interrupted bulk run goes on from its last restart file, also while it pours; Ctrl-C leaves no process behind."""
 
 import json
 import os
@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from parts_cases import BED, mm, mps, parts, timed
 from scene_runs import restart_steps, run, write_case, write_deck
 from test_lean import CASES, small
 
-from engines.lammps_decks import needs_lammps
 from epdem.base.files import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
@@ -159,7 +159,9 @@ EMPTY = {
         if path.stem != "press_layer"  # ends before it can be stopped
     ]
     + [
-        thorough(path, "lammps", unless=path.stem == "adhesive_powder", marks=[needs_lammps], id=f"{path.stem}-lammps")
+        thorough(
+            path, "lammps", unless=path.stem == "adhesive_powder", marks=[pytest.mark.lammps], id=f"{path.stem}-lammps"
+        )
         for path in SCENES
         if path.stem in ("adhesive_powder", "drum_beads", "hopper_beads", "press_tablet")
     ],
@@ -277,3 +279,87 @@ def test_restart_files_are_kept_until_the_engine_has_gone_on_after_a_later_one(t
     for step, kept in ((100, [100, 200, 300, 400]), (250, [200, 300, 400]), (300, [200, 300, 400]), (900, [400])):
         restarts.prune(tmp_path, step)
         assert steps_of(tmp_path, "restart.*.bin") == kept
+
+
+COUNT = 100
+
+
+@pytest.fixture(scope="module")
+def poured(tmp_path_factory):
+    """(plan, folder with its restart files, particles): beads poured in three lots in the first quarter of the run."""
+    folder = tmp_path_factory.mktemp("poured")
+    data = read_toml(Path(__file__).parents[2] / "cases/settle_glass.toml")
+    scene = {
+        "box": mm(16, 16, 40),
+        "count": COUNT,
+        "rate": "1000 Hz",
+        "duration": "0.4 s",
+        "particles": [{"material": "glass", "radius": "1.5 mm"}],
+    }
+    output = {"rows": 20, "particles": 20, "restarts": 20}
+    case = parse(data | {"scene": data["scene"] | scene, "output": output, "numerics": {"error": 0.1}})
+    p = write_deck(case, folder)
+    launcher.run("in.scene", folder)
+    return p, folder, tables.particles(Frames(p, folder, tables.kinds(p)))
+
+
+def continued(poured, begin: int, tmp_path):
+    """Particles of the frames after step `begin` of a run continued from there, in a folder of its own."""
+    p, folder, _ = poured
+    for path in (folder / "setup.in", folder / launcher.OUT, folder / f"restart.{begin}.bin", *folder.glob("*.data")):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    resume.write_resume(p, tmp_path, begin)
+    launcher.run("in.resume", tmp_path)
+    return tables.particles(Frames(p, tmp_path, tables.kinds(p), range(begin + 1)))
+
+
+def test_a_run_interrupted_while_it_pours_ends_with_all_its_spheres(poured, tmp_path):
+    _, folder, whole = poured
+    counts = whole.groupby("step")["id"].count()
+    begin = next(s for s in restart_steps(folder) if counts[s] == counts[counts < COUNT].max())
+    again = continued(poured, begin, tmp_path)
+    assert 0 < counts[begin] < COUNT
+    last = again[again["step"] == whole["step"].max()]
+    assert sorted(last["id"]) == list(range(1, COUNT + 1))
+    assert last["mass"].sum() == pytest.approx(whole[whole["step"] == whole["step"].max()]["mass"].sum(), rel=1e-12)
+    # a sphere that fell into another one would still be in flight, or would have left the box
+    assert last["z"].between(0, 0.04).all()
+    assert (last[["vx", "vy", "vz"]] ** 2).sum(axis=1).max() < 0.1**2
+
+    # what was there goes on bit by bit up to the next lot, which LIGGGHTS puts to other places than it would have done
+    before = again[again["step"].map(counts) == counts[begin]]
+    assert len(before) and before.equals(whole[whole["step"].isin(before["step"])].reset_index(drop=True))
+    fresh = last["id"] > counts[begin]
+    assert (
+        not last[fresh]
+        .reset_index(drop=True)
+        .equals(whole[(whole["step"] == whole["step"].max()) & (whole["id"] > counts[begin])].reset_index(drop=True))
+    )
+
+
+def test_a_run_interrupted_after_the_last_sphere_was_poured_ends_bitwise_the_same(poured, tmp_path):
+    _, folder, whole = poured
+    counts = whole.groupby("step")["id"].count()
+    begin = next(s for s in restart_steps(folder) if counts[s] == COUNT)
+    again = continued(poured, begin, tmp_path)
+    assert again.equals(whole[whole["step"] > begin].reset_index(drop=True))
+
+
+def test_a_stream_that_has_ended_does_not_begin_again_where_spheres_are_still_to_come(tmp_path):
+    """Forty single ones, each with a velocity of its own: more than LIGGGHTS has groups."""
+    stream = BED | {"count": 10, "rate": "1 kHz", "velocity": mps(0, 0, -1)}
+    ball = {"material": "steel", "radius": "0.4 mm", "velocity": mps(0, 0, -0.5), "phase": "rain"}
+    place = [(x, y) for x in range(-7, 9, 2) for y in range(-4, 6, 2)]
+    balls = [ball | {"name": f"b{n}", "position": mm(x, y, 39)} for n, (x, y) in enumerate(place)]
+    phases = [timed("pour", "60 ms"), timed("rain", "10 ms")]
+    data = parts(fill=[stream], body=balls, phase=phases, periodic=True)
+    data |= {"output": {"rows": 28, "particles": 28, "restarts": 28}, "numerics": {"time_step": "1e-5 s"}}
+    p = write_deck(parse(data), tmp_path)
+    launcher.run("in.scene", tmp_path)
+    whole = tables.particles(Frames(p, tmp_path, tables.kinds(p)))
+    counts = whole.groupby("step")["id"].count()
+    begin = next(s for s in restart_steps(tmp_path) if counts.get(s) == 10)
+    (tmp_path / "again").mkdir()
+    again = continued((p, tmp_path, whole), begin, tmp_path / "again")
+    assert begin < p.phases[0].end and counts.iloc[-1] == 50
+    assert again.equals(whole[whole["step"] > begin].reset_index(drop=True))

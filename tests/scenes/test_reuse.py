@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import pytest
 from parts_cases import parts
-from scene_runs import write_case
+from scene_runs import HOSTS, write_case
 
 from epdem.base import paths
 from epdem.engines import engine, scene_engine
@@ -20,11 +20,6 @@ from epdem.scenes.tables import results
 from epdem.studies.sweep import run as sweeps
 from marks import thorough
 
-HOSTS = [
-    pytest.param("liggghts", marks=pytest.mark.liggghts),
-    pytest.param("yade", marks=pytest.mark.yade("module")),
-    pytest.param("lammps", marks=pytest.mark.lammps),
-]
 STEEL = (Path(__file__).parents[2] / "cases/steel_wall.toml").read_text()
 IMPACTS = STEEL.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', '["1 m/s", "5 m/s"]')
 
@@ -64,12 +59,17 @@ def test_impacts_run_again_for_what_the_engine_reads_alone(host, tmp_path, monke
         ('title = "Steel', 'title = "Any steel'),
         ("e_n = 1e-4", "e_n = 1e-9"),
         ('source = "phys', 'source = "a phys'),
+        ("[check]", "[check]\npsi_2 = 0.5"),
+        ("[case]", "# a comment\n[case]"),
     ):
         assert old in IMPACTS and again(IMPACTS.replace(old, new)) == 0
     monkeypatch.setattr(paths, "product_hash", lambda **_: "another page")
     assert again(IMPACTS) == 0
     for old, new in (
         ('name = "thornton"', 'name = "cavity"'),
+        ('radius = "10 mm"', 'radius = "11 mm"'),
+        ('"5 m/s"]', '"4 m/s"]'),
+        ("phases = 8", "phases = 9"),
         ("poisson_ratio = 0.3", "poisson_ratio = 0.31"),
         ("steps_in_contact = 400", "steps_in_contact = 401"),
     ):
@@ -129,6 +129,11 @@ def test_a_scene_runs_again_for_what_the_engine_reads_alone(host, tmp_path, monk
         assert again(scene()) == 1 and again(scene(), ranks=2) == 1
     again(scene())
     compiled_again(tool, tmp_path, monkeypatch)
+    assert again(scene()) == 1 and again(scene()) == 0
+    monkeypatch.setattr(tool, "version", lambda: "another one")
+    assert again(scene()) == 1 and again(scene()) == 0
+    files = tool.files
+    monkeypatch.setattr(tool, "files", lambda p: files(p) | {"wall.stl": "another one"})
     assert again(scene()) == 1
 
 

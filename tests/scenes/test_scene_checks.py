@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from parts_cases import FLOOR, parts
+from parts_cases import BOX, FLOOR, bead, mm, parts
 from stored_runs import data_of
 
 from epdem.case.scene import parse
@@ -21,9 +21,7 @@ from epdem.scenes.tables.columns import named_rows
 from epdem.scenes.tables.columns import rows as table_of_rows
 from epdem.studies.sweep.table import numbers_of, unit
 
-BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
-BOX |= {"material": "steel"}
-STONE = {"name": "stone", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "5 mm"], "frozen": True}
+STONE = bead("stone", mm(0, 0, 5), "2 mm", "steel", frozen=True)
 
 
 def planned(name: str, law: str | None = None, n_rows: int = 40, **scene: object) -> ScenePlan:

@@ -7,8 +7,8 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from parts_cases import BED, parts
-from scene_runs import run, write_case
+from parts_cases import BED, BOX, linear, mm, parts, timed
+from scene_runs import ran
 from test_parts_motions import PLATE
 
 from epdem.report.pages import write_scene_page
@@ -16,8 +16,7 @@ from epdem.report.scenes import charts
 
 pytestmark = pytest.mark.figures
 
-BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
-LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "12 mm"], "size": ["17.9 mm", "17.9 mm"]}
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": mm(0, 0, 12), "size": mm(17.9, 17.9)}
 TUBE = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
 
 
@@ -27,9 +26,9 @@ def outcome(tmp_path_factory):
     place = tmp_path_factory.mktemp("figures")
     wanted = [{"name": "all", "kind": "count"}, {"name": "top", "kind": "height"}]
     data = parts(wall=[TUBE, PLATE | {"name": "lid"}], fill=[BED], measure=wanted)
-    data["scene"]["phase"] = [{"name": "fall", "duration": "30 ms"}]
+    data["scene"]["phase"] = [timed("fall", "30 ms")]
     data["output"] = {"rows": 10, "particles": 5, "loads": True, "energy": True}
-    return run(write_case(data, place), out=place / "out")
+    return ran(data, place)
 
 
 @pytest.fixture(scope="module")
@@ -94,20 +93,18 @@ def test_figures_and_tables_have_one_name_for_one_thing(outcome, page):
 
 
 def lid(speed: float) -> dict:
-    return {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", f"{speed} m/s"]}
+    return linear("lid", 0, 0, speed)
 
 
 @pytest.mark.liggghts
 def test_a_press_of_parts_has_force_over_displacement_and_time_has_the_ends_of_phases(tmp_path):
     """6.6 mm down at 0.2 m/s from 20 ms on, then 1.4 mm back; places are those of the middle of each row."""
-    phases = [{"name": "fall", "duration": "20 ms"}]
-    phases += [
-        {"name": name, "duration": t, "move": [lid(v)]} for name, t, v in (("down", "33 ms", -0.2), ("up", "7 ms", 0.2))
-    ]
-    walls = [BOX | {"material": "steel", "open": ["+z"]}, LID | {"material": "steel"}]
-    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "11.9 mm"]}, "count": 66}
+    phases = [timed("fall", "20 ms")]
+    phases += [timed(name, t, move=[lid(v)]) for name, t, v in (("down", "33 ms", -0.2), ("up", "7 ms", 0.2))]
+    walls = [BOX | {"open": ["+z"]}, LID | {"material": "steel"}]
+    bed = BED | {"region": BED["region"] | {"z": mm(0, 11.9)}, "count": 66}
     data = parts(wall=walls, fill=[bed], phase=phases) | {"output": {"rows": 60, "particles": 2, "loads": True}}
-    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    outcome = ran(data, tmp_path)
     found = {chart.name: chart for chart in charts(outcome)}
     (panel,) = found["key"].panels
     assert (panel.x.label, panel.y.label) == ("displacement of lid", "force on lid")

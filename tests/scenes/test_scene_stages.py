@@ -60,53 +60,6 @@ def test_the_second_call_takes_the_stored_results(case, tmp_path):
     assert run(case, engine, out=tmp_path / "out", fresh=True).reused is False
 
 
-def change_case(case, engine, monkeypatch):
-    beads = data_of("drum")["materials"]["beads"] | {"young_modulus": "11 MPa"}
-    write_case(data_of("drum") | {"materials": {"beads": beads}}, case.parent)
-
-
-def change_triangles(case, engine, monkeypatch):
-    data = data_of("drum")
-    write_case(data | {"scene": data["scene"] | {"diameter": "16.0001 mm"}}, case.parent)
-
-
-def change_version(case, engine, monkeypatch):
-    engine.says = "LIGGGHTS 3.8.1"
-
-
-def change_part(case, engine, monkeypatch):
-    (case.parent / "plugin.so").write_bytes(b"compiled again")
-    monkeypatch.setattr(engine, "parts", lambda: [case.parent / "plugin.so"])
-
-
-def change_file(case, engine, monkeypatch):
-    files = engine.files
-    monkeypatch.setattr(engine, "files", lambda p: files(p) | {"drum.stl": files(p)["drum.stl"] + "\n"})
-
-
-@pytest.mark.parametrize("change", [change_case, change_triangles, change_version, change_part, change_file])
-def test_each_input_that_changes_makes_it_run_again(change, case, tmp_path, monkeypatch):
-    engine = Stored()
-    run(case, engine, out=tmp_path / "out")
-    change(case, engine, monkeypatch)
-    again = run(case, engine, out=tmp_path / "out")
-    assert (again.reused, engine.runs) == (False, 2)
-    assert run(case, engine, out=tmp_path / "out").reused
-
-
-def test_another_number_of_ranks_is_another_input(case, tmp_path):
-    engine = Stored()
-    run(case, engine, out=tmp_path / "out")
-    assert not run(case, engine, out=tmp_path / "out", ranks=2).reused
-
-
-def test_a_comment_in_the_case_is_no_input(case, tmp_path):
-    engine = Stored()
-    run(case, engine, out=tmp_path / "out")
-    case.write_text("# seen again\n" + case.read_text())
-    assert run(case, engine, out=tmp_path / "out").reused
-
-
 @pytest.mark.parametrize(
     ("lacks", "options", "words"),
     [
@@ -133,13 +86,6 @@ def test_an_engine_that_is_not_here_says_how_to_get_it(case, tmp_path):
 
 
 STRENGTH = {"yield_pressure": "3 MPa"}
-
-
-def test_an_error_that_no_step_reaches_is_named_by_its_key():
-    """A dashpot converges with first order, so that e_n within 1e-9 takes more steps than anyone runs."""
-    data = data_of("settle") | {"viscous": {"restitution": 0.5}, "numerics": {"error": 1e-9}}
-    with pytest.raises(CaseError, match=r"numerics\.error = 1e-09 is not reached.*numerics\.time_step"):
-        plan(parse(data))
 
 
 def test_a_material_s_own_strength_goes_before_that_of_the_law():

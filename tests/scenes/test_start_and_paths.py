@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import BED, FLOOR, bead, driven, flat, mm, mps, parts, timed
+from scene_runs import ran
 
 from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
@@ -21,20 +21,19 @@ from epdem.scenes.plan.meshes import at_end
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.columns import place
 
-PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["6 mm"] * 2}
-PLATE |= {"material": "steel"}
-FALL = {"name": "fall", "duration": "20 ms"}
-SECOND = {"name": "second", "duration": "20 ms"}
+PLATE = flat("plate", mm(0, 0, 5), mm(6, 6))
+FALL = timed("fall", "20 ms")
+SECOND = timed("second", "20 ms")
 
 
 def body(name, *mm, **more):
-    return {"name": name, "material": "glass", "radius": "1 mm", "position": [f"{x} mm" for x in mm]} | more
+    return bead(name, [f"{x} mm" for x in mm], "1 mm", "glass") | more
 
 
 def moved(**phases):
     """The plate above a floor, with its motion in each phase."""
     motions = [{"wall": "plate"} | motion for motion in phases.values()]
-    made = [{"name": n, "duration": "20 ms", "move": [m]} for n, m in zip(phases, motions, strict=True)]
+    made = [timed(n, "20 ms", move=[m]) for n, m in zip(phases, motions, strict=True)]
     return parts(wall=[FLOOR, PLATE], fill=[], body=[body("a", 0, 0, 20)], phase=made)
 
 
@@ -73,9 +72,7 @@ def test_spheres_that_come_together_with_a_centre_in_each_other_are_refused(apar
     comes = [None if still else phase for phase, still in zip(phases, frozen, strict=True)]
     more = [{"frozen": still} | ({"phase": p} if p else {}) for p, still in zip(comes, frozen, strict=True)]
     data = parts(
-        fill=[],
-        body=[body("a", 0, 0, 20, **more[0]), body("b", 0, 0, 20 + apart, **more[1])],
-        phase=[FALL, SECOND],
+        fill=[], body=[body("a", 0, 0, 20, **more[0]), body("b", 0, 0, 20 + apart, **more[1])], phase=[FALL, SECOND]
     )
     together = (comes[0] or "fall") == (comes[1] or "fall")
     least = 1.0 if comes[0] in (None, "fall") else 2.0  # spheres of a later phase do not overlap at all
@@ -152,23 +149,20 @@ def test_the_path_of_a_wall_is_that_of_its_points_at_many_times(move, seconds):
 
 VIBRATE = {"kind": "vibrate", "frequency": "100 Hz"}
 SPIN = {"kind": "rotate", "axis": [0.0, 0.0, 1.0]}
-PUSH = {"kind": "linear", "velocity": ["0.4 m/s", "0 m/s", "0 m/s"]}  # 8 mm in a phase
+PUSH = {"kind": "linear", "velocity": mps(0.4, 0, 0)}  # 8 mm in a phase
 
 
 @pytest.mark.parametrize(
     ("phases", "says"),
     [  # the centres of the two triangles lie at 1 mm on both sides of the plate's own
-        ({"one": VIBRATE | {"amplitude": ["8 mm", "0 mm", "0 mm"]}}, None),
-        ({"one": VIBRATE | {"amplitude": ["9.5 mm", "0 mm", "0 mm"]}}, r"one.move: wall plate .* x = 0.0105 m"),
-        (
-            {"one": VIBRATE | {"amplitude": ["0 mm", "0 mm", "11 mm"]}},
-            r"reaches z = -0.006 m and the room is from -0.0",
-        ),
-        ({"one": SPIN | {"rate": "600 rpm", "origin": ["4 mm", "0 mm", "0 mm"]}}, None),
-        ({"one": SPIN | {"rate": "3000 rpm", "origin": ["6 mm", "0 mm", "0 mm"]}}, r"leaves scene.room.* x = 0.013"),
-        ({"one": SPIN | {"rate": "10 rpm", "origin": ["6 mm", "0 mm", "0 mm"]}}, None),  # 1.2 degrees
-        ({"one": PUSH, "two": VIBRATE | {"amplitude": ["0.5 mm", "0 mm", "0 mm"]}}, None),
-        ({"one": PUSH, "two": VIBRATE | {"amplitude": ["1.5 mm", "0 mm", "0 mm"]}}, r"two.move.* x = 0.0105 m"),
+        ({"one": VIBRATE | {"amplitude": mm(8, 0, 0)}}, None),
+        ({"one": VIBRATE | {"amplitude": mm(9.5, 0, 0)}}, r"one.move: wall plate .* x = 0.0105 m"),
+        ({"one": VIBRATE | {"amplitude": mm(0, 0, 11)}}, r"reaches z = -0.006 m and the room is from -0.0"),
+        ({"one": SPIN | {"rate": "600 rpm", "origin": mm(4, 0, 0)}}, None),
+        ({"one": SPIN | {"rate": "3000 rpm", "origin": mm(6, 0, 0)}}, r"leaves scene.room.* x = 0.013"),
+        ({"one": SPIN | {"rate": "10 rpm", "origin": mm(6, 0, 0)}}, None),  # 1.2 degrees
+        ({"one": PUSH, "two": VIBRATE | {"amplitude": mm(0.5, 0, 0)}}, None),
+        ({"one": PUSH, "two": VIBRATE | {"amplitude": mm(1.5, 0, 0)}}, r"two.move.* x = 0.0105 m"),
         ({"one": PUSH, "two": SPIN | {"rate": "600 rpm"}}, None),
         ({"one": PUSH, "two": PUSH}, r"two.move.* x = 0.017 m"),
     ],
@@ -186,22 +180,22 @@ def test_spheres_from_a_nanometre_to_a_millimetre_are_filled_in(tmp_path):
     sizes = {"from": "1 nm", "to": "1.6 mm"}
     data = parts(fill=[BED | {"count": 20, "particles": [{"material": "glass", "radius": sizes}]}])
     del data["output"]["energy"]
-    spheres = run(write_case(data, tmp_path), out=tmp_path / "out").results.particles
+    spheres = ran(data, tmp_path).results.particles
     radii = spheres[spheres["step"] == spheres["step"].min()]["radius"]
     assert len(radii) == 20 and radii.min() == pytest.approx(1e-9) and radii.max() == pytest.approx(1.6e-3)
 
 
 @pytest.mark.liggghts
 def test_a_wall_that_its_force_drives_out_of_the_room_is_named(tmp_path):
-    press = {"wall": "plate", "kind": "press", "direction": [0.0, 0.0, 1.0], "force": "1 N", "highest_speed": "9 m/s"}
+    press = driven("plate", [0.0, 0.0, 1.0], "1 N", "9 m/s")
     data = parts(wall=[FLOOR, PLATE], fill=[], body=[body("a", 5, 0, 1)], phase=[FALL | {"move": [press]}])
     with pytest.raises(EngineError, match=r"scene.wall.plate: the wall has left scene.room after step \d+; enlarge"):
-        run(write_case(data, tmp_path), out=tmp_path / "out")
+        ran(data, tmp_path)
 
 
 TUBE = {"name": "tube", "kind": "cylinder", "diameter": "10 mm", "from": "10 mm", "to": "20 mm", "material": "steel"}
-UP = {"kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}
-TURN = {"kind": "rotate", "axis": [1, 0, 0], "origin": ["0 mm", "0 mm", "15 mm"], "rate": "12.5 turn/s"}
+UP = {"kind": "linear", "velocity": mps(0, 0, 0.1)}
+TURN = {"kind": "rotate", "axis": [1, 0, 0], "origin": mm(0, 0, 15), "rate": "12.5 turn/s"}
 PRESS = {"kind": "press", "direction": [0, 0, -1], "force": "1 N", "highest_speed": "0.1 m/s"}
 
 
@@ -214,7 +208,7 @@ def test_walls_at_the_end_are_where_their_motions_take_them(both, turns):
     moves = [[] if m is None else [m | {"wall": "plate"}] for m in both]
     for n in turns:
         moves[n].append(TURN | {"wall": "tube"})
-    phases = [{"name": name, "duration": "20 ms", "move": m} for name, m in zip(("a", "b"), moves, strict=True)]
+    phases = [timed(name, "20 ms", move=m) for name, m in zip(("a", "b"), moves, strict=True)]
     p = plan(parse(parts(wall=[FLOOR, PLATE, TUBE], fill=[BED | {"count": 3}], phase=phases)))
     found = at_end([(phase.moves, 0.02) for phase in p.phases], p.triangles)
     assert ("plate" in found) == (PRESS not in both)
@@ -229,7 +223,7 @@ def test_walls_at_the_end_are_where_their_motions_take_them(both, turns):
 
 @pytest.mark.parametrize("name", ["vibrate", "turn"])
 def test_a_row_has_the_place_of_a_wall_that_vibrates_or_turns_through_two_phases(name):
-    move = VIBRATE | {"amplitude": ["0.5 mm", "0 mm", "0 mm"]} if name == "vibrate" else SPIN | {"rate": "600 rpm"}
+    move = VIBRATE | {"amplitude": mm(0.5, 0, 0)} if name == "vibrate" else SPIN | {"rate": "600 rpm"}
     p = plan(parse(moved(one=move, two=move)))
     times = np.linspace(0.0, p.phase_table["end_time"].iloc[-1], 40)
     x, y, _ = p.triangles["plate"][0, 0]

@@ -2,7 +2,7 @@
 """Sweeps over keys that name files: names count from the case file, and an edited file runs again."""
 
 import pytest
-from parts_cases import BED, parts
+from parts_cases import BED, parts, timed
 from scene_runs import write_case
 
 from epdem.errors import CaseError
@@ -18,7 +18,7 @@ TABLE = "x,y,z,radius\n0,0,0.01,0.001\n"
 def case(tmp_path):
     """A case with a table of one sphere, in a folder with another table and two sieves."""
     data = parts(fill=[{"name": "table", "file": "one.csv", "material": "glass"}, BED])
-    data["scene"]["phase"] = [{"name": "fall", "duration": "1 ms"}]
+    data["scene"]["phase"] = [timed("fall", "1 ms")]
     data["output"] = {"rows": 1}
     folder = tmp_path / "case"
     path = write_case(data, folder)

@@ -62,21 +62,19 @@ def test_pair_and_wall_of_ones_own_deck_have_one_model(own, tmp_path):
     assert wall.endswith(f"wall/gran {model.replace(' compute', ' primitive type 1 zplane 0.0 compute', 1)}")
 
 
-def test_an_undefined_name_stops_and_is_named(own, tmp_path):
-    with pytest.raises(CaseError, match="'steps' is undefined"):
-        write(own, SETTLE, settings(["height=0.02"]), tmp_path / "out")
+@pytest.mark.parametrize(
+    ("text", "given", "words"),
+    [
+        (OWN, ["height=0.02"], "'steps' is undefined"),
+        (OWN, ["height=0.02", "steps=1", "hieght=3"], "hieght"),
+        ("{{ deck.friction_of_the_moon }}", [], "friction_of_the_moon"),
+    ],
+)
+def test_a_name_that_only_one_of_template_and_call_has_stops(text, given, words, own, tmp_path):
+    own.write_text(text)
+    with pytest.raises(CaseError, match=words):
+        write(own, SETTLE, settings(given), tmp_path / "out")
     assert not (tmp_path / "out").exists()
-
-
-def test_a_name_that_the_template_does_not_use_stops(own, tmp_path):
-    with pytest.raises(CaseError, match="hieght"):
-        write(own, SETTLE, settings(["height=0.02", "steps=1", "hieght=3"]), tmp_path / "out")
-
-
-def test_an_unknown_value_of_the_case_stops(own, tmp_path):
-    own.write_text("{{ deck.friction_of_the_moon }}")
-    with pytest.raises(CaseError, match="friction_of_the_moon"):
-        write(own, STEEL, {}, tmp_path / "out")
 
 
 def test_an_impact_case_brings_its_data_file(own, tmp_path):

@@ -5,8 +5,8 @@ import h5py
 import numpy as np
 import pandas as pd
 import pytest
-from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from parts_cases import BED, BOX, FLOOR, bead, flat, linear, mm, mps, parts, timed
+from scene_runs import ran
 
 from epdem.case.scene import parse
 from epdem.engines.liggghts import dump
@@ -16,21 +16,19 @@ from epdem.scenes.tables import results
 vtk = pytest.importorskip("vtk", reason="VTK is not installed; make test installs it")
 numpy_support = pytest.importorskip("vtk.util.numpy_support")
 
-BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
-BOX |= {"material": "steel", "stress": True}
-LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "18 mm"], "size": ["17 mm", "17 mm"]}
-LID |= {"material": "steel", "stress": True}
+LID = flat("lid", mm(0, 0, 18), mm(17, 17), stress=True)
 GATE = {"name": "gate", "kind": "plane", "axis": "z", "at": "20 mm", "material": "steel", "phases": ["fall"]}
-FALL = {"name": "fall", "duration": "40 ms"}
-DOWN = {"kind": "linear", "wall": "lid", "velocity": ["0 m/s", "0 m/s", "-0.2 m/s"]}
-PUSH = {"name": "push", "duration": "40 ms", "move": [DOWN]}
-LATE = {"name": "late", "material": "steel", "radius": "1 mm", "phase": "push"}
-LATE |= {"position": ["0 mm", "0 mm", "38 mm"], "velocity": ["0 m/s", "0 m/s", "0 m/s"]}
+FALL = timed("fall", "40 ms")
+DOWN = linear("lid", 0, 0, -0.2)
+PUSH = timed("push", "40 ms", move=[DOWN])
+LATE = bead("late", mm(0, 0, 38), "1 mm", "steel", phase="push", velocity=mps(0, 0, 0))
 
 
 def case():
-    fill = BED | {"count": 20, "region": BED["region"] | {"z": ["1 mm", "16 mm"]}}
-    data = parts(wall=[FLOOR | {"at": "-1 mm"}, BOX, LID, GATE], fill=[fill], body=[LATE], phase=[FALL, PUSH])
+    fill = BED | {"count": 20, "region": BED["region"] | {"z": mm(1, 16)}}
+    data = parts(
+        wall=[FLOOR | {"at": "-1 mm"}, BOX | {"stress": True}, LID, GATE], fill=[fill], body=[LATE], phase=[FALL, PUSH]
+    )
     data["output"] |= {"particles": 6}
     return data
 
@@ -39,7 +37,7 @@ def case():
 def folder(tmp_path_factory):
     """The folder of a scene whose number of spheres, moving wall and gate change from frame to frame."""
     place = tmp_path_factory.mktemp("vtkhdf")
-    run(write_case(case(), place), out=place / "out")
+    ran(case(), place)
     return place / "out"
 
 

@@ -8,26 +8,20 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from parts_cases import BED, STEEL, parts, write_stl
-from scene_runs import run, write_case
+from parts_cases import BED, BOX, STEEL, bead, linear, mm, mps, parts, timed, write_stl
+from scene_runs import ran, run, write_case
 
-from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
-from epdem.engines import scene_engine
 from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
-from epdem.jobs.engine import check
 from epdem.scenes.plan.plan import plan
-
-BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
-BOX |= {"material": "steel"}
 
 
 def scene(*, wear=None, friction=0.0, **output):
     data = parts(
         wall=[BOX | {"stress": True} | ({"wear": wear} if wear else {})],
-        fill=[BED | {"velocity": ["0.2 m/s", "0 m/s", "0 m/s"]}],
-        phase=[{"name": "fall", "duration": "0.2 s"}],
+        fill=[BED | {"velocity": mps(0.2, 0, 0)}],
+        phase=[timed("fall", "0.2 s")],
     )
     data["viscous"], data["contact"] = {"restitution": 0.4}, {"friction": friction}
     data["output"] = {"rows": 8, "particles": 4} | output
@@ -36,7 +30,7 @@ def scene(*, wear=None, friction=0.0, **output):
 
 @pytest.mark.liggghts
 def test_the_pressure_on_the_floor_bears_the_bed_and_nothing_wears(tmp_path):
-    outcome = run(write_case(scene(), tmp_path), out=tmp_path / "out")
+    outcome = ran(scene(), tmp_path)
     walls = outcome.results.walls
     last = walls[walls["step"] == walls["step"].max()]
     weight = 40 * 2500 * 4 / 3 * math.pi * 1.5e-3**3 * 9.81
@@ -52,34 +46,22 @@ def test_wear_grows_and_is_proportional_to_its_constant(tmp_path):
     for constant in ("1e-9 m^2/N", "2e-9 m^2/N"):
         place = tmp_path / constant[0]
         place.mkdir()
-        outcome = run(write_case(scene(wear=constant, friction=0.3), place), out=place / "out")
+        outcome = ran(scene(wear=constant, friction=0.3), place)
         wear[constant] = outcome.results.walls.pivot(index="step", columns="triangle", values="wear")
     one, two = wear.values()
     assert (one.diff().iloc[1:] >= 0).all(axis=None) and one.iloc[-1].max() > 0 and not one.iloc[0].any()
     assert two.to_numpy() == pytest.approx(2 * one.to_numpy(), rel=1e-9)
 
 
-def test_two_walls_of_a_material_wear_alike_and_frames_are_needed():
-    other = BOX | {"name": "other", "x": ["-8 mm", "8 mm"], "wear": "2e-9 m^2/N"}
-    data = scene(wear="1e-9 m^2/N")
-    data["scene"]["wall"].append(other)
-    with pytest.raises(CaseError, match=r"scene.wall.other.wear = 2e-09 m\^2/N: wall box has 1e-09 m\^2/N, and"):
-        scene_deck.files(plan(parse(data)))
-    with pytest.raises(CaseError, match=r"scene.wall.box: stress and wear are written with the frames"):
-        plan(parse(scene(particles=0)))
-    with pytest.raises(CaseError, match=r"LIGGGHTS's restart files lack the wear of wall box.* lammps"):
-        check(scene_engine("liggghts"), plan(parse(scene(wear="1e-9 m^2/N", restarts=1))))
-
-
 def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "iron"), spheres=("glass", "glass")):
     """A sphere slides on each of two plates."""
     wall, body = [], []
     for x, wear, of_wall, of_sphere, name in zip((-5, 5), wears, walls, spheres, ("left", "right"), strict=True):
-        place = [f"{x} mm", "0 mm", "0 mm"]
-        plate = {"name": name, "kind": "plate", "axis": "z", "center": place, "size": ["9 mm", "18 mm"]}
+        place = mm(x, 0, 0)
+        plate = {"name": name, "kind": "plate", "axis": "z", "center": place, "size": mm(9, 18)}
         wall.append(plate | {"material": of_wall} | ({"wear": wear} if wear else {}))
-        ball = {"name": f"on_{name}", "material": of_sphere, "radius": "1 mm", "position": [*place[:2], "0.999 mm"]}
-        body.append(ball | {"velocity": ["0 m/s", "0.1 m/s", "0 m/s"]})
+        ball = bead(f"on_{name}", [*place[:2], "0.999 mm"], "1 mm", of_sphere)
+        body.append(ball | {"velocity": mps(0, 0.1, 0)})
     data = parts(wall=wall, fill=[], body=body)
     data["materials"]["iron"] = STEEL
     data["output"] = {"rows": 8, "particles": 4}
@@ -88,7 +70,7 @@ def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "i
 
 @pytest.mark.liggghts
 def test_walls_of_two_materials_wear_by_their_own_constants(tmp_path):
-    walls = run(write_case(sliding_on_two_plates(), tmp_path), out=tmp_path / "out").results.walls
+    walls = ran(sliding_on_two_plates(), tmp_path).results.walls
     wear = walls.groupby("wall")["wear"].max()
     assert wear["right"] == pytest.approx(3 * wear["left"], rel=1e-6) and wear["left"] > 0
 
@@ -98,9 +80,9 @@ def strikes(*wears):
     data = sliding_on_two_plates(wears)
     data["contact"] = {"friction": 0.3}
     for body, x, speed in zip(data["scene"]["body"], (-3, 7), (0.3, 0.02), strict=True):
-        body |= {"position": [f"{x} mm", "-4 mm", "1 mm"], "velocity": ["0.05 m/s", "0.1 m/s", f"-{speed} m/s"]}
-    slide = {"wall": "right", "kind": "linear", "velocity": ["0 m/s", "-0.2 m/s", "0 m/s"]}
-    data["scene"]["phase"] = [{"name": "strike", "duration": "6 ms", "move": [slide]}]
+        body |= {"position": mm(x, -4, 1), "velocity": ["0.05 m/s", "0.1 m/s", f"-{speed} m/s"]}
+    slide = linear("right", 0, -0.2, 0)
+    data["scene"]["phase"] = [timed("strike", "6 ms", move=[slide])]
     data["output"] = {"rows": 75, "particles": 75}
     data["numerics"] = {"time_step": "4e-6 s"}
     return data
@@ -123,7 +105,7 @@ def test_stress_and_wear_in_yade_are_those_in_liggghts(tmp_path):
     assert max(deviations(ours, theirs, "area", "normal_stress", "shear_stress", "wear")) <= 0.01
 
 
-@needs_lammps
+@pytest.mark.lammps
 @pytest.mark.liggghts
 @pytest.mark.parametrize("kind", ["plate", "stl", "turn"])
 def test_stress_and_wear_in_lammps_are_those_in_liggghts(kind, tmp_path):
@@ -136,10 +118,10 @@ def test_stress_and_wear_in_lammps_are_those_in_liggghts(kind, tmp_path):
             stl = {"kind": "stl", "file": "plate.stl", "position": wall["center"]}
             data["scene"]["wall"][k] = {key: wall[key] for key in ("name", "material", "wear")} | stl
     elif kind == "turn":
-        turn = {"wall": "right", "kind": "rotate", "axis": "-x", "origin": ["5 mm", "0 mm", "0 mm"], "rate": "300 rpm"}
+        turn = {"wall": "right", "kind": "rotate", "axis": "-x", "origin": mm(5, 0, 0), "rate": "300 rpm"}
         (phase,) = data["scene"]["phase"]  # the second one begins while spheres touch both plates
         times = {"strike": "0.24 ms", "slide": "5.76 ms"}
-        data["scene"]["phase"] = [phase | {"name": n, "duration": t, "move": [turn]} for n, t in times.items()]
+        data["scene"]["phase"] = [phase | timed(n, t, move=[turn]) for n, t in times.items()]
     path = write_case(data, tmp_path)
     ours, theirs = (run(path, engine=tool, out=tmp_path / tool).results.walls for tool in ("lammps", "liggghts"))
     assert max(deviations(ours, theirs, "area", "normal_stress", "shear_stress", "wear")) <= 1e-9
@@ -149,17 +131,14 @@ def test_stress_and_wear_in_lammps_are_those_in_liggghts(kind, tmp_path):
 @pytest.mark.yade("module")
 def test_spheres_at_rest_press_a_periodic_plate_in_yade_with_their_weight(tmp_path):
     """At the overlap at which Hertz's force is the weight; YADE has the plate as one triangle."""
-    plate = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm"] * 3, "size": ["20 mm", "20 mm"]}
+    plate = {"name": "plate", "kind": "plate", "axis": "z", "center": mm(0, 0, 0), "size": mm(20, 20)}
     weight, young = 2500 * 4 / 3 * math.pi * 1.5e-3**3 * 9.81, 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
     z = 1e3 * (1.5e-3 - (0.75 * weight / young / math.sqrt(1.5e-3)) ** (2 / 3))
-    spheres = [
-        {"name": f"ball{n}", "material": "glass", "radius": "1.5 mm", "position": [f"{x} mm", "1 mm", f"{z!r} mm"]}
-        for n, x in enumerate((-9, 0, 4))
-    ]
+    spheres = [bead(f"ball{n}", [f"{x} mm", "1 mm", f"{z!r} mm"], "1.5 mm", "glass") for n, x in enumerate((-9, 0, 4))]
     data = parts(wall=[plate | {"material": "steel", "stress": True}], fill=[], body=spheres, periodic=True)
     data |= {"law": {"name": "hertz"}, "output": {"rows": 4, "particles": 4}}
-    data["scene"]["phase"] = [{"name": "rest", "duration": "1 ms"}]
-    walls = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out").results.walls
+    data["scene"]["phase"] = [timed("rest", "1 ms")]
+    walls = ran(data, tmp_path, "yade").results.walls
     assert walls["area"].to_numpy() == pytest.approx(2e-4) and len(walls) == 2 * 6  # 50 steps are five rows
     assert walls["normal_stress"].to_numpy() == pytest.approx(3 * weight / 4e-4, rel=1e-6)
     assert not walls["shear_stress"].any() and not walls["wear"].any()

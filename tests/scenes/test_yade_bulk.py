@@ -12,12 +12,11 @@ from scene_runs import run, write_deck
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
-from epdem.engines import log, scene_engine
+from epdem.engines import log
 from epdem.engines.liggghts import launcher
 from epdem.engines.yade import tables as yade_tables
 from epdem.engines.yade.launcher import OUT, environment
 from epdem.errors import CaseError, EngineError
-from epdem.jobs.engine import check
 from epdem.scenes.plan import placement
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.columns import named_rows
@@ -182,23 +181,6 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
     assert (x - r[:, None] >= [-0.015, -0.015, 0.0]).all() and (x + r[:, None] <= [0.015, 0.015, 0.08]).all()
     # of 1000 draws 226 +- 13 are large, which is +- 0.016 of the mass: four standard deviations
     assert (r[r > 1.5e-3] ** 3).sum() / (r**3).sum() == pytest.approx(0.7, abs=0.06)
-
-
-@pytest.mark.parametrize(
-    ("name", "place", "value", "words", "others"),
-    [
-        ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2", "liggghts or lammps"),
-        ("settle_glass", "output", {"pictures": 2}, r"output.pictures = 2", "liggghts"),
-    ],
-)
-def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words, others):
-    data, tool = read_toml(CASES / f"{name}.toml"), scene_engine("yade")
-    data[place] = data.get(place, {}) | value
-    tool.classes = True
-    with pytest.raises(CaseError, match=words) as found:
-        check(tool, plan(parse(data)))
-    assert str(found.value).endswith(f"remove it or use --engine {others}")
-    assert found.value.exit_code == 2
 
 
 def test_without_the_module_a_scene_names_the_command_that_builds_it(tmp_path):

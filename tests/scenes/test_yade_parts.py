@@ -5,13 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from parts_cases import BED, FLOOR, own, parts
-from scene_runs import in_hosts, run, write_case
+from parts_cases import BED, FLOOR, bead, linear, mm, mps, own, parts, timed
+from scene_runs import in_hosts, ran
 from test_parts_motions import FALL, PLATE
 
 from epdem.case.scene import parse
 from epdem.engines.yade import deck as scene_deck
-from epdem.errors import CaseError
 from epdem.scenes.plan.plan import plan
 
 
@@ -21,7 +20,7 @@ def test_beads_leave_a_hopper_when_its_shutter_is_gone_in_yade(tmp_path):
     data["scene"] |= {"bin_diameter": "20 mm", "bin_height": "30 mm", "outlet": "10 mm", "outlet_height": "10 mm"}
     data["scene"] |= {"count": 30, "fill_time": "0.12 s", "duration": "0.08 s"}
     data |= {"output": {"rows": 6, "particles": 10, "energy": True}, "numerics": {"time_step": "5e-5 s"}}
-    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    outcome = ran(data, tmp_path, "yade")
     spheres, contacts, (fill, _) = outcome.results.particles, outcome.results.contacts, outcome.plan.phases
     outlet = next(w.at for w in outcome.plan.scene.gates)
     before, after = spheres[spheres["step"] <= fill.end], spheres[spheres["step"] == outcome.plan.steps]
@@ -30,17 +29,6 @@ def test_beads_leave_a_hopper_when_its_shutter_is_gone_in_yade(tmp_path):
     assert (after["z"] < outlet).mean() > 0.9, "through, but for some on the cone"
     resting = contacts["step"] <= fill.end
     assert {"hopper", "shutter"} <= {*contacts[resting]["wall"]} and "shutter" not in {*contacts[~resting]["wall"]}
-
-
-@pytest.mark.yade("module")
-def test_phases_without_record_have_no_frames_in_yade(tmp_path):
-    phases = [FALL | {"name": name, "duration": "2 ms", "record": name in "ad"} for name in "abcd"]
-    data = parts(phase=phases) | {"output": {"rows": 16, "particles": 16}, "numerics": {"time_step": "2e-5 s"}}
-    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
-    assert outcome.plan.steps == 400 and {*outcome.results.particles["step"]} == {
-        *range(0, 101, 25),
-        *range(300, 401, 25),
-    }
 
 
 BODIES = """x,y,z,radius,vx,vy,vz
@@ -55,20 +43,11 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
     """Without friction (YADE has another); of a file, one frozen; a plate of triangles rises; two time steps."""
     table = {"name": "table", "file": str(tmp_path / "spheres.csv"), "material": "glass"}
     (tmp_path / "spheres.csv").write_text(BODIES)
-    frozen = {
-        "name": "held",
-        "material": "steel",
-        "radius": "2 mm",
-        "position": ["0 mm", "0 mm", "11 mm"],
-        "frozen": True,
-    }
-    fast = {"name": "fast", "material": "glass", "radius": "1.5 mm", "position": ["5 mm", "-4 mm", "12 mm"]}
-    fast |= {"velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
-    up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.3 m/s"]}
-    phases = [FALL | {"duration": "5 ms", "move": [up]}, FALL | {"name": "on", "duration": "5 ms"}]
-    data = parts(
-        wall=[FLOOR, PLATE | {"center": ["0 mm", "1 mm", "6 mm"]}], fill=[table], body=[frozen, fast], phase=phases
-    )
+    frozen = bead("held", mm(0, 0, 11), "2 mm", "steel", frozen=True)
+    fast = bead("fast", mm(5, -4, 12), "1.5 mm", "glass", velocity=mps(0, 0, -1))
+    up = linear("lid", 0, 0, 0.3)
+    phases = [FALL | {"duration": "5 ms", "move": [up]}, FALL | timed("on", "5 ms")]
+    data = parts(wall=[FLOOR, PLATE | {"center": mm(0, 1, 6)}], fill=[table], body=[frozen, fast], phase=phases)
     data["scene"]["phase"][1]["time_step"] = "5e-6 s"
     data["numerics"] = {"time_step": "1e-5 s"}
     data["output"] = {"rows": 10, "particles": 10, "loads": True}
@@ -96,16 +75,6 @@ def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two():
     angles = dict.fromkeys([(0, 0)], math.atan(0.3)) | dict.fromkeys([(0, 1), (1, 1)], math.atan(0.6))
     (friction,) = [v for v in found.contact.functors.pairs if v.name == "frictAngle"]
     assert friction.matches == tuple((*pair, pytest.approx(angle)) for pair, angle in angles.items())
-
-
-def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
-    tube = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
-    up = {"wall": "tube", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "1 cm/s"]}
-    data = parts(wall=[FLOOR, tube | {"angular_velocity": "2 rad/s"}], phase=[FALL | {"move": [up]}])
-    with pytest.raises(
-        CaseError, match=r"scene\.wall\.tube\.angular_velocity: YADE turns the wall itself, which moves otherwise"
-    ):
-        scene_deck.deck(plan(parse(data)))
 
 
 def test_a_wall_of_any_name_leaves_the_table_of_the_spheres():

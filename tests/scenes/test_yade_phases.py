@@ -3,11 +3,10 @@
 
 import numpy as np
 import pytest
-from parts_cases import BED, FLOOR, own, parts
-from scene_runs import assert_alike, in_hosts, run, write_case
-from test_parts_motions import BOX, FALL, PLATE
+from parts_cases import BED, BOX, FLOOR, driven, linear, mm, mps, own, parts, timed, vibrating
+from scene_runs import assert_alike, in_hosts, ran
+from test_parts_motions import FALL, PLATE
 
-from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import EngineError
@@ -17,10 +16,10 @@ from epdem.scenes.tables.columns import last_frame
 pytestmark = pytest.mark.yade("module")
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
-UP = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.2 m/s"]}
-SPIN = {"wall": "lid", "kind": "rotate", "axis": [0.0, 1.0, 0.0], "origin": ["0 mm", "0 mm", "6 mm"], "rate": "4 rad/s"}
-SHAKE = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "0.3 mm"], "frequency": "100 Hz"}
-PRESS = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, 1.0], "force": "0.5 N", "highest_speed": "0.2 m/s"}
+UP = linear("lid", 0, 0, 0.2)
+SPIN = {"wall": "lid", "kind": "rotate", "axis": [0.0, 1.0, 0.0], "origin": mm(0, 0, 6), "rate": "4 rad/s"}
+SHAKE = vibrating("lid", mm(0, 0, 0.3), "100 Hz")
+PRESS = driven("lid", [0.0, 0.0, 1.0], "0.5 N", "0.2 m/s")
 COUNT, FORCE = {"count": 3, "after": "0 s"}, {"wall": "lid", "force": "0.01 N", "after": "0 s"}
 
 
@@ -28,23 +27,20 @@ def balls(**scene):
     """Spheres at places of their own: one leaves the room, one comes with the second phase, one is held by a gate."""
 
     def ball(name, x, y, z, **keys):
-        return BALL | {"name": name, "position": [f"{x} mm", f"{y} mm", f"{z} mm"]} | keys
+        return BALL | {"name": name, "position": mm(x, y, z)} | keys
 
     body = [
-        ball("leaves", 7, 7, 20, velocity=["1 m/s", "0 m/s", "0 m/s"]),
-        ball("on_gate", -6, 6, 18, velocity=["0 m/s", "0 m/s", "-0.4 m/s"]),
-        ball("on_lid", 1, 2, 9.0, velocity=["0 m/s", "0 m/s", "-0.5 m/s"]),
-        ball("on_trap", 7, -7, 8, velocity=["0 m/s", "0 m/s", "-0.3 m/s"]),
-        ball("late", 0.5, -3, 12, velocity=["0 m/s", "0.1 m/s", "-0.9 m/s"], phase="on"),
+        ball("leaves", 7, 7, 20, velocity=mps(1, 0, 0)),
+        ball("on_gate", -6, 6, 18, velocity=mps(0, 0, -0.4)),
+        ball("on_lid", 1, 2, 9.0, velocity=mps(0, 0, -0.5)),
+        ball("on_trap", 7, -7, 8, velocity=mps(0, 0, -0.3)),
+        ball("late", 0.5, -3, 12, velocity=mps(0, 0.1, -0.9), phase="on"),
     ]
     planes = [
         {"kind": "plane", "axis": "z", "material": "steel"} | x
-        for x in (
-            {"name": "gate", "at": "16 mm", "phases": ["fall"]},
-            {"name": "trap", "at": "4 mm", "phases": ["on"]},
-        )
+        for x in ({"name": "gate", "at": "16 mm", "phases": ["fall"]}, {"name": "trap", "at": "4 mm", "phases": ["on"]})
     ]
-    lid = PLATE | {"center": ["0 mm", "0 mm", "6 mm"], "size": ["9 mm", "9 mm"]}
+    lid = PLATE | {"center": mm(0, 0, 6), "size": mm(9, 9)}
     data = parts(wall=[FLOOR, *planes, lid], fill=[], body=body, open_boundary=True) | {
         "numerics": {"time_step": "5e-6 s"}
     }
@@ -59,7 +55,7 @@ def balls(**scene):
 )
 def test_spheres_gates_and_conditions_do_the_same_in_both_engines(until, move, tmp_path):
     """Motions that go on over the end of a phase that ends early."""
-    phases = [FALL | {"until": until, "move": [move]}, FALL | {"name": "on", "duration": "8 ms", "move": [move]}]
+    phases = [FALL | {"until": until, "move": [move]}, FALL | timed("on", "8 ms", move=[move])]
     ours, theirs = in_hosts(balls(phase=phases), tmp_path, "yade", "liggghts")
     ends = ["phase", "begin", "end", "until"]
     assert ours.phases[ends].equals(theirs.phases[ends]) and ours.phases["until"].iloc[0] == "reached"
@@ -75,20 +71,14 @@ def test_spheres_gates_and_conditions_do_the_same_in_both_engines(until, move, t
 
 def test_a_stream_has_its_rate_and_ends_with_its_count(tmp_path):
     """2 kHz from a layer at the top; with a wall that turns below, whose work closes the balance."""
-    layer = BED["region"] | {"z": ["30 mm", "38 mm"]}
-    lid = PLATE | {"center": ["0 mm", "0 mm", "9 mm"], "size": ["12 mm", "12 mm"]}
-    turn = {
-        "wall": "lid",
-        "kind": "rotate",
-        "axis": [0.0, 1.0, 0.0],
-        "origin": ["0 mm", "0 mm", "9 mm"],
-        "rate": "20 rad/s",
-    }
+    layer = BED["region"] | {"z": mm(30, 38)}
+    lid = PLATE | {"center": mm(0, 0, 9), "size": mm(12, 12)}
+    turn = {"wall": "lid", "kind": "rotate", "axis": [0.0, 1.0, 0.0], "origin": mm(0, 0, 9), "rate": "20 rad/s"}
     phases = [FALL | {"duration": "50 ms", "move": [turn]}]
-    fill = BED | {"region": layer, "count": 60, "rate": "2 kHz", "velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
+    fill = BED | {"region": layer, "count": 60, "rate": "2 kHz", "velocity": mps(0, 0, -1)}
     data = parts(wall=[BOX, lid], fill=[fill], phase=phases)
     data["output"] = {"rows": 50, "particles": 50, "energy": True}
-    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    outcome = ran(data, tmp_path, "yade")
     found = outcome.results
     rows = found.rows
     assert outcome.passed, found.checks
@@ -102,11 +92,11 @@ def test_a_stream_has_its_rate_and_ends_with_its_count(tmp_path):
 
 
 def test_a_fill_of_a_later_phase_finds_places_between_the_spheres_that_are_there(tmp_path):
-    more = BED | {"name": "more", "count": 30, "phase": "on", "region": {"diameter": "17 mm", "z": ["0 mm", "30 mm"]}}
-    still = [FALL | {"duration": "1 ms"}, FALL | {"name": "on", "duration": "1 ms"}]
+    more = BED | {"name": "more", "count": 30, "phase": "on", "region": {"diameter": "17 mm", "z": mm(0, 30)}}
+    still = [FALL | {"duration": "1 ms"}, FALL | timed("on", "1 ms")]
     data = parts(wall=[FLOOR, BOX], fill=[BED | {"count": 60}, more], phase=still, gravity="0 m/s^2")
     data["numerics"]["highest_speed"] = "1 m/s"
-    found = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out").results
+    found = ran(data, tmp_path, "yade").results
     last = last_frame(found.particles)
     x, r = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy()
     gap = np.linalg.norm(x[:, None] - x, axis=2) - r[:, None] - r + np.eye(len(x))
@@ -118,53 +108,16 @@ def test_a_fill_of_a_later_phase_finds_places_between_the_spheres_that_are_there
 
 
 def test_a_fill_without_room_ends_the_run_with_one_sentence(tmp_path):
-    inside = {"x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"], "z": ["5 mm", "13 mm"]}
+    inside = {"x": mm(-4, 4), "y": mm(-4, 4), "z": mm(5, 13)}
     more = BED | {"name": "more", "count": 2, "phase": "on", "region": inside}
-    held = BALL | {"name": "held", "radius": "9 mm", "frozen": True, "position": ["0 mm", "0 mm", "9 mm"]}
+    held = BALL | {"name": "held", "radius": "9 mm", "frozen": True, "position": mm(0, 0, 9)}
     data = parts(fill=[more], body=[held], phase=[FALL | {"duration": "1 ms"}, FALL | {"name": "on"}])
     with pytest.raises(EngineError, match=r"scene\.fill\.more: no room is left for sphere \d+ without overlap after"):
-        run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
-
-
-def test_a_wall_holds_its_force_after_a_phase_until_a_force(tmp_path):
-    hold = PRESS | {"direction": [0.0, 0.0, -1.0], "force": "0.2 N", "highest_speed": "0.03 m/s"}
-    lid = PLATE | {"center": ["0 mm", "0 mm", "15 mm"]}
-    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "14 mm"]}}
-    phases = [
-        {
-            "name": "press",
-            "duration": "1 s",
-            "until": {"wall": "lid", "force": "0.1 N", "after": "0 s"},
-            "move": [hold],
-        },
-        {"name": "hold", "duration": "0.4 s", "move": [hold]},
-    ]
-    data = parts(wall=[BOX, lid], fill=[bed], phase=phases) | {"contact": {"friction": 0.5}}
-    data["output"] = {"rows": 400, "particles": 2, "loads": True}
-    found = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out").results
-    rows, end = found.rows, found.phases["end"].iloc[0]
-    force = np.linalg.norm(rows[["lid_force_x", "lid_force_y", "lid_force_z"]], axis=1)
-    assert force[rows["step"] == end] >= 0.1 > force[rows["step"] < end].max()
-    assert force[-50:].mean() == pytest.approx(0.2, rel=0.02)
-    assert found.phases["until"].to_list() == ["reached", ""] and found.phases["end_time"].iloc[0] < 1
-
-
-def test_a_condition_that_is_not_reached_is_named_in_yade(tmp_path):
-    phases = [
-        FALL | {"name": n, "duration": "10 ms", "until": {"kinetic_energy": x}}
-        for n, x in (("a", "1 J"), ("b", "1e-30 J"))
-    ]
-    data = parts(phase=[*phases, FALL | {"duration": "5 ms"}]) | {"output": {"rows": 30, "particles": 2}}
-    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
-    table = outcome.results.phases
-    assert table["until"].to_list() == ["reached", "not reached", ""]
-    assert 1e-3 < table["end_time"].iloc[0] < 3e-3, "looked at from a tenth of the duration"
-    assert outcome.results.rows["step"].iloc[-1] == outcome.plan.steps == table["end"].iloc[-1]
-    assert any(said.startswith("scene.phase.b.until was not reached") for said in outcome.warnings)
+        ran(data, tmp_path, "yade")
 
 
 def test_motions_that_phases_name_in_another_order_go_on():
-    lids = [PLATE | {"name": name, "center": ["0 mm", "0 mm", f"{z} mm"]} for name, z in (("lid", 6), ("roof", 9))]
+    lids = [PLATE | {"name": name, "center": mm(0, 0, z)} for name, z in (("lid", 6), ("roof", 9))]
     both = [UP, UP | {"wall": "roof"}]
     phases = [FALL | {"name": name, "move": move} for name, move in (("one", both), ("two", both[::-1]))]
     text = scene_engine("yade").files(plan(parse(parts(wall=[FLOOR, *lids], phase=phases))))["scene.py"]
@@ -172,23 +125,20 @@ def test_motions_that_phases_name_in_another_order_go_on():
     assert text.count("def motions()") == 1
 
 
-@needs_lammps
+@pytest.mark.lammps
 @pytest.mark.liggghts
 def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(tmp_path):
     """Pressed, at rest and drawn back: the slip of each step is that of its own motion."""
     body = [
-        BALL | {"name": f"b{k}", "position": [f"{x} mm", f"{y} mm", "1.5 mm"]}
+        BALL | {"name": f"b{k}", "position": mm(x, y, 1.5)}
         for k, (x, y) in enumerate([(1.1, -0.4), (-2.2, -0.7), (0.2, 3.1)])
     ]
-    moves = [
-        [{"wall": "lid", "kind": "linear", "velocity": [f"{x} m/s", "0 m/s", f"{z} m/s"]}]
-        for x, z in ((0.05, -0.2), (-0.04, 0.1))
-    ]
+    moves = [[linear("lid", x, 0, z)] for x, z in ((0.05, -0.2), (-0.04, 0.1))]
     phases = [
-        FALL | {"name": name, "duration": "0.4 ms", "move": move}
+        FALL | timed(name, "0.4 ms", move=move)
         for name, move in (("press", moves[0]), ("hold", []), ("draw", moves[1]))
     ]
-    lid = PLATE | {"center": ["0 mm", "0 mm", "3.01 mm"], "size": ["14 mm", "14 mm"]}
+    lid = PLATE | {"center": mm(0, 0, 3.01), "size": mm(14, 14)}
     data = parts(wall=[FLOOR, lid], fill=[], body=body, phase=phases, gravity="0 m/s^2")
     data |= {"contact": {"friction": 0.3}, "numerics": {"time_step": "4e-6 s"}}
     data["output"] = {"rows": 100, "particles": 2, "loads": True}
@@ -200,7 +150,7 @@ def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(tmp_pat
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("size", ["20 mm", "11 mm"], ids=["endless", "with edges"])
+@pytest.mark.parametrize("size", mm(20, 11), ids=["endless", "with edges"])
 def test_a_plate_shakes_spheres_of_a_periodic_room_as_in_liggghts(size, tmp_path):
     """Spheres that meet across the sides of the room, and a plate as wide as the room or narrower."""
     body = [
@@ -214,7 +164,7 @@ def test_a_plate_shakes_spheres_of_a_periodic_room_as_in_liggghts(size, tmp_path
             )
         )
     ]
-    lid = PLATE | {"center": ["0 mm", "0 mm", "4 mm"], "size": [size, size]}
+    lid = PLATE | {"center": mm(0, 0, 4), "size": [size, size]}
     data = parts(
         wall=[FLOOR, lid], fill=[], body=body, periodic=True, phase=[FALL | {"duration": "24 ms", "move": [SHAKE]}]
     )
@@ -237,7 +187,7 @@ def test_the_torque_of_a_drum_gives_its_bed_the_energy_that_it_has(tmp_path):
     data["scene"] |= {"diameter": "16 mm", "length": "8 mm", "particles": [{"material": "beads", "radius": "0.7 mm"}]}
     data |= {"contact": {"friction": 0.5, "tangential": "partial_slip"}}
     data["output"] = {"rows": 40, "particles": 40, "energy": True, "loads": True}
-    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    outcome = ran(data, tmp_path, "yade")
     assert "torque_of_the_bed" in outcome.results.checks["key"].to_list()
     balance = outcome.results.energy_balance
     assert outcome.passed, outcome.results.checks
@@ -250,7 +200,7 @@ def test_shot_rebounds_and_leaves_with_its_energy(tmp_path):
     data = own("peening_steel")
     data["scene"] |= {"count": 12, "duration": "0.55 ms"}
     data["output"] |= {"rows": 60, "particles": 60, "energy": True}
-    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    outcome = ran(data, tmp_path, "yade")
     found = outcome.results
     assert outcome.passed, found.checks
     assert found.rows["particles"].iloc[0] == 12 > found.rows["particles"].iloc[-1]

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from parts_cases import parts
-from scene_runs import in_hosts, run, write_case
+from parts_cases import bead, linear, mm, mps, parts, timed
+from scene_runs import in_hosts, ran
 from test_parts_motions import PLATE
 
 from epdem.case.scene import parse
@@ -19,7 +19,7 @@ YOUNG = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
 
 def ball(name: str, place: tuple[float, ...], radius: float = 1.0, **keys: object) -> dict:
     position = [f"{x!r} mm" for x in place]
-    return {"name": name, "material": "glass", "radius": f"{radius} mm", "position": position} | keys
+    return bead(name, position, f"{radius} mm", "glass") | keys
 
 
 def hertz(overlap: float, radius: float = 1e-3) -> float:
@@ -30,13 +30,13 @@ def hertz(overlap: float, radius: float = 1e-3) -> float:
 @pytest.mark.parametrize("kind", ["plate", "box", "periodic"])
 def test_a_frozen_sphere_on_the_diagonal_has_the_force_of_hertz(kind, tmp_path):
     """Of a plate, of the floor of a box, of a plate as wide as a periodic room across x."""
-    overlap, size = 0.02, ["20 mm", "45 mm"] if kind == "periodic" else ["18 mm", "18 mm"]
+    overlap, size = 0.02, mm(20, 45) if kind == "periodic" else mm(18, 18)
     wall = {"name": "lid", "material": "steel"}
     if kind == "box":
-        sides = {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["9 mm", "20 mm"]}
+        sides = {"x": mm(-9, 9), "y": mm(-9, 9), "z": mm(9, 20)}
         wall |= {"kind": "box", "open": ["+z"]} | sides
     else:
-        axis, center = ("x", ["9 mm", "0 mm", "17.5 mm"]) if kind == "periodic" else ("z", ["0 mm", "0 mm", "9 mm"])
+        axis, center = ("x", mm(9, 0, 17.5)) if kind == "periodic" else ("z", mm(0, 0, 9))
         wall |= {"kind": "plate", "axis": axis, "center": center, "size": size}
     at = 8 + overlap
     places = {
@@ -44,10 +44,10 @@ def test_a_frozen_sphere_on_the_diagonal_has_the_force_of_hertz(kind, tmp_path):
         for name, (x, y) in DIAGONAL.items()
     }
     data = parts(wall=[wall], fill=[], body=[ball(name, place, frozen=True) for name, place in places.items()])
-    data["scene"] |= {"phase": [{"name": "hold", "duration": "0.2 ms"}]}
+    data["scene"] |= {"phase": [timed("hold", "0.2 ms")]}
     data["scene"] |= {"periodic": "y"} if kind == "periodic" else {}
     data |= {"law": {"name": "hertz"}, "output": {"rows": 2, "particles": 2, "contacts": 2, "loads": True}}
-    results = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out").results
+    results = ran(data, tmp_path, "yade").results
     contacts = results.contacts[results.contacts["step"] == results.contacts["step"].max()]
     assert contacts["force"].to_numpy() == pytest.approx([hertz(overlap * 1e-3)] * 2, rel=1e-9)
     axis = "x" if kind == "periodic" else "z"
@@ -59,11 +59,11 @@ def test_a_frictionless_sphere_slides_over_the_diagonal(tmp_path):
     """At rest along z under its weight, it keeps its speed along x."""
     weight = 2500 * 4 / 3 * math.pi * 1e-9 * 9.81
     z = 1.0 - 1e3 * (0.75 * weight / YOUNG / math.sqrt(1e-3)) ** (2 / 3)
-    plate = PLATE | {"center": ["0 mm", "0 mm", "0 mm"]}
-    body = ball("slider", (-1.0, 0.0, z), velocity=["1 m/s", "0 m/s", "0 m/s"])
-    data = parts(wall=[plate], fill=[], body=[body], phase=[{"name": "slide", "duration": "2 ms"}])
+    plate = PLATE | {"center": mm(0, 0, 0)}
+    body = ball("slider", (-1.0, 0.0, z), velocity=mps(1, 0, 0))
+    data = parts(wall=[plate], fill=[], body=[body], phase=[timed("slide", "2 ms")])
     data |= {"law": {"name": "hertz"}, "output": {"rows": 10, "particles": 10}}
-    particles = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out").results.particles
+    particles = ran(data, tmp_path, "yade").results.particles
     assert particles["x"].iloc[0] < 0 < particles["x"].iloc[-1]
     assert particles["vx"].to_numpy() == pytest.approx(1.0, abs=1e-9)
     assert particles["z"].to_numpy() == pytest.approx(z * 1e-3, rel=1e-6)
@@ -75,10 +75,10 @@ def test_spheres_under_a_moving_plate_yield_as_in_liggghts(tmp_path):
     """Two on the diagonal, two beside it, pressed between a plate that descends and the floor, then released."""
     places = [(2.0, 2.0), (-4.0, -4.0), (5.0, -2.0), (-3.0, 6.0)]
     bodies = [ball(f"b{n}", (x, y, 1.0)) for n, (x, y) in enumerate(places)]
-    floor = PLATE | {"name": "base", "center": ["0 mm", "0 mm", "0 mm"]}
-    down, up = ({"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", f"{v} m/s"]} for v in (-0.02, 0.02))
-    phases = [{"name": n, "duration": "2 ms", "move": [m]} for n, m in (("press", down), ("release", up))]
-    data = parts(wall=[floor, PLATE | {"center": ["0 mm", "0 mm", "2 mm"]}], fill=[], body=bodies, phase=phases)
+    floor = PLATE | {"name": "base", "center": mm(0, 0, 0)}
+    down, up = (linear("lid", 0, 0, v) for v in (-0.02, 0.02))
+    phases = [timed(n, "2 ms", move=[m]) for n, m in (("press", down), ("release", up))]
+    data = parts(wall=[floor, PLATE | {"center": mm(0, 0, 2)}], fill=[], body=bodies, phase=phases)
     data["scene"]["gravity"] = "0 m/s^2"
     data["output"] = {"rows": 10, "particles": 10, "energy": True, "loads": True}
     data["numerics"] = {"time_step": "2e-6 s"}

@@ -76,6 +76,34 @@ WRONG = {
         r"no key 'scene\.body\.7\.radius'",
     ),
     "cite of a number": (lambda c, p: cite(3), "case = 3: of type int"),
+    "two ranks of one": (
+        lambda c, p: run(c, engines="embedded", ranks=2, out=p),
+        "ranks 2: engine embedded runs on one rank",
+    ),
+    "an engine that is none": (
+        lambda c, p: run(c, engines="nothing", out=p),
+        "engines 'nothing' does not exist",
+    ),
+    "a deck of an engine without": (
+        lambda c, p: deck(c, p, engine="embedded"),
+        "it reads no deck; use engine liggghts or",
+    ),
+    "a sweep of no point": (
+        lambda c, p: sweep(c, {}, out=p),
+        "a sweep needs points: settings KEY=VALUES or --points",
+    ),
+    "no measurement": (
+        lambda c, p: calibrate(c),
+        "give one measurement: e_n with speed, measured, hv, hb, or indentation",
+    ),
+    "a speed without e_n": (
+        lambda c, p: calibrate(c, hv=200, speed="1 m/s"),
+        "speed: it belongs to e_n; leave it out",
+    ),
+    "a measurement that is none": (
+        lambda c, p: calibrate(c, vickers=200),
+        "vickers: no measurement of a Case; there are dent_ratio, e_n",
+    ),
 }
 
 

@@ -97,11 +97,7 @@ def test_two_targets_give_two_keys(place, caplog):
         ),
         ({"floor_load_mean": "1 kg"}, DENSITY, "wrong dimension.*write it as floor_load_mean=1 N"),
         ({"floor_load_mean": "0 N"}, DENSITY, "other than 0"),
-        (
-            {"floor_load_mean": "1 N"},
-            {"materials.glass.density": "1 kg/m^3..2 kg/m^3:5"},
-            "write its range as LOW",
-        ),
+        ({"floor_load_mean": "1 N"}, {"materials.glass.density": "1 kg/m^3..2 kg/m^3:5"}, "write its range as LOW"),
         ({"floor_load_mean": "1 N"}, {}, "a fit needs a --target NAME=VALUE, and one to 3 keys"),
         (
             {"floor_load_mean": "1 N"},
