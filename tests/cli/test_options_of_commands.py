@@ -156,11 +156,10 @@ def library(tmp_path, monkeypatch, outcomes):
         monkeypatch.setattr(module, name, replacement)
 
     record(impacts_run, "run", outcomes["run"])
-    record(pages, "write_impacts_page", Path("page.html"))
+    record(pages, "write_page", Path("page.html"))
     record(scenes_run, "run", SimpleNamespace(passed=True))
     record(summary, "shown", ())
     record(summary, "document", {})
-    record(pages, "write_scene_page", Path("page.html"))
     record(crosscheck, "crosscheck")
     record(motions, "compare")
     record(contacts, "compare")

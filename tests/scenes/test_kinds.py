@@ -15,7 +15,7 @@ from scene_runs import HOSTS, run, write_case
 from epdem.case.scene import load
 from epdem.case.toml import portable_text, read_toml
 from epdem.errors import CaseError
-from epdem.report.pages import write_scene_page
+from epdem.report.pages import write_page
 from epdem.scenes.judge.measures import refuse_measures
 from epdem.scenes.plan.plan import plan
 from epdem.studies.sweep.run import plan as plan_sweep
@@ -54,7 +54,7 @@ def test_a_kind_of_a_user_runs_and_its_torque_does_the_work(engine, mill):
     work = np.cumsum(-6.0 * rows["torque"] * np.diff(rows["time"], prepend=0.0))
     assert balance["work"].iloc[-1] == pytest.approx(work.iloc[-1], rel=1e-9)
     assert np.abs(rows["torque"]).max() > 0
-    page = write_scene_page(outcome).read_text()
+    page = write_page(outcome).read_text()
     assert "Key figure: torque against time" in page and "A scene of kind mill" in page
 
 

@@ -16,7 +16,7 @@ from epdem.case.scene import parse
 from epdem.cli.options import answer
 from epdem.errors import CaseError
 from epdem.laws.strengths import LawSpec
-from epdem.report.pages import write_scene_page
+from epdem.report.pages import write_page
 from epdem.report.scenes import charts
 from epdem.report.scenes import measures as curves_of
 from epdem.scenes.judge import measures, summary
@@ -284,7 +284,7 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     assert set(drawn) >= {"scene", "scene_measures", "scene_dents", "scene_speeds"}
     (bins,) = drawn["scene_dents"].panels[0].series
     assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
-    assert "Histograms" in write_scene_page(outcome).read_text()
+    assert "Histograms" in write_page(outcome).read_text()
     answer(None, summary.shown(outcome), as_json=False)
     said = capsys.readouterr().out
     dents = spheres_then.query("step == step.max()")["plastic_work"]
@@ -344,7 +344,7 @@ def test_a_force_needs_no_frames_and_is_a_target(frames, tmp_path, capsys):
     assert f"{-peak:.5g}" in capsys.readouterr().out
     document = summary.document(outcome)
     assert document["measures"][0]["lift"] == outcome.results.rows["lift"].iloc[-1]
-    write_scene_page(outcome)
+    write_page(outcome)
     if frames:  # a sweep and a fit of frames: test_a_measure_is_a_target_with_its_unit
         return
     swept = study.run(study.plan(path, {"materials.glass.density": ["2500 kg/m^3"]}), tmp_path / "sweep", jobs=1)

@@ -101,7 +101,7 @@ def test_an_unknown_field_is_refused():
     data = parts()
     data["output"]["color"] = "omega_x"
     with pytest.raises(CaseError, match=r"output.color = 'omega_x': spheres of this scene have speed, energy, id"):
-        measures.refuse_color(plan(parse(data)))
+        measures.refuse_measures(plan(parse(data)))
 
 
 def test_translation_and_spin_are_counted_apart():

@@ -13,7 +13,7 @@ from stored_runs import CASES
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.report.pages import scene_page, scene_sentences, write_scene_page
+from epdem.report.pages import scene_page, scene_sentences, write_page
 from epdem.report.scenes import key
 from epdem.scenes.judge import summary
 from epdem.scenes.plan.plan import plan
@@ -200,7 +200,7 @@ def in_si(heads, rows):
 @pytest.mark.liggghts
 def test_page_terminal_figures_and_csv_have_the_same_numbers(pressed):
     """Read back from what a reader sees, with the units that stand there; all in SI are those of results.h5."""
-    page = write_scene_page(pressed, ["svg"]).read_text()
+    page = write_page(pressed, ["svg"]).read_text()
     assert page.index(">Stages</h2>") < page.index(">Force over displacement</h2>") < page.index(">The bed</h2>")
     ends, folder = pressed.results.tables["stages"], pressed.folder
     seen = {}

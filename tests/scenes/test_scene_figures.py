@@ -11,7 +11,7 @@ from parts_cases import BED, BOX, linear, mm, parts, timed
 from scene_runs import ran
 from test_parts_motions import PLATE
 
-from epdem.report.pages import write_scene_page
+from epdem.report.pages import write_page
 from epdem.report.scenes import charts
 
 pytestmark = pytest.mark.figures
@@ -33,7 +33,7 @@ def outcome(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(outcome):
-    return write_scene_page(outcome).read_text()
+    return write_page(outcome).read_text()
 
 
 @pytest.mark.liggghts

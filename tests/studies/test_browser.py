@@ -16,7 +16,7 @@ import pytest
 
 from epdem.engines import engine
 from epdem.impacts.run import run
-from epdem.report.pages import write_impacts_page
+from epdem.report.pages import write_page
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium")
@@ -46,7 +46,7 @@ def page(tmp_path_factory):
     """A page with the script that looks at it."""
     place = tmp_path_factory.mktemp("browser")
     outcome = run(ROOT / "cases/steel_wall.toml", engines=[engine("embedded")], out=place / "out")
-    path = write_impacts_page(outcome)
+    path = write_page(outcome)
     path.write_text(path.read_text().replace("</body>", f"{SEEN}</body>"))
     return path
 

@@ -77,8 +77,21 @@ class _Finished:
         """Where results.h5, results.csv and the decks are."""
         return self.outcome.folder
 
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from ..report.pages import write_page
 
-@dataclass(frozen=True)
+        return write_page(self.outcome)
+
+    def __repr__(self) -> str:
+        done = self.outcome
+        kind, tables = "impacts", {"table": done.results.comparison} if isinstance(done, Outcome) else {}
+        if isinstance(done, SceneOutcome):
+            kind, tables = "scene", done.results.tables
+        return two_lines(f"{kind} {done.case.name}", self.passed, self.folder, tables)
+
+
+@dataclass(frozen=True, repr=False)
 class Run(_Finished):
     """Results of impacts; a notebook shows the table. `outcome` also has plans, predictions and warnings."""
 
@@ -95,21 +108,11 @@ class Run(_Finished):
 
         return save_figure(self.outcome)
 
-    def report(self) -> Path:
-        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..report.pages import write_impacts_page
-
-        return write_impacts_page(self.outcome)
-
-    def __repr__(self) -> str:
-        title = f"impacts {self.outcome.case.name}"
-        return two_lines(title, self.passed, self.folder, {"table": self.outcome.results.comparison})
-
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SceneRun(_Finished):
     """Results of a scene; a notebook shows the checks. `outcome` also has the plan and warnings."""
 
@@ -119,16 +122,6 @@ class SceneRun(_Finished):
     def tables(self) -> dict[str, pd.DataFrame]:
         """rows, particles, contacts, energy_balance and checks, as far as the scene requests them."""
         return {name: with_units(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
-
-    def report(self) -> Path:
-        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..report.pages import write_scene_page
-
-        return write_scene_page(self.outcome)
-
-    def __repr__(self) -> str:
-        title = f"scene {self.outcome.plan.case.name}"
-        return two_lines(title, self.passed, self.folder, self.outcome.results.tables)
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())

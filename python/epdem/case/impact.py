@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, Self
 
 import numpy as np
-from pydantic import Field, Tag, ValidationError, model_validator
+from pydantic import Field, Tag, model_validator
 
-from ..errors import CaseError
 from .fields import (
     Coefficient,
     Frozen,
-    Header,
     Interval,
     Length,
     Line,
@@ -28,10 +26,9 @@ from .fields import (
     Viscous,
     by_shape,
 )
-from .law import LawChoice, LawMaterial, check_law
-from .messages import explain
+from .law import AnyCase, LawChoice, check_law
 from .sizes import Share
-from .toml import read_toml, with_library
+from .toml import read_toml
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
@@ -169,11 +166,9 @@ class Friction(Frozen):
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
 
 
-class Case(Frozen):
+class Case(AnyCase):
     """One experiment: impacts of one body on one target over a range of speeds."""
 
-    case: Header
-    materials: dict[Name, LawMaterial]
     impact: Impact
     law: LawChoice
     rate: Rate | None = None
@@ -212,10 +207,6 @@ class Case(Frozen):
             raise ValueError("measured: these are e_n of normal impacts; remove it, or impact.angles and impact.spins")
 
     @property
-    def name(self) -> str:
-        return self.case.name
-
-    @property
     def tolerances(self) -> Check:
         """`check`; by default psi_2 of one spring or with a dashpot is not checked: theory has partial slip alone."""
         c = self.contact
@@ -227,11 +218,7 @@ class Case(Frozen):
 
 def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
-    data = with_library(data, path)
-    try:
-        return Case.model_validate(data)
-    except ValidationError as error:
-        raise CaseError(explain(path, data, error, "impact")) from None
+    return Case.read(data, path, "impact")
 
 
 def load(path: Path | str) -> Case:

@@ -3,16 +3,18 @@
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, check_ratios, find_law
 from ..theory.cavity import FINITE_STRAIN
-from .fields import Material, Name, Quantity
-from .messages import nearest, shorten, shown_key
+from .fields import Frozen, Header, Material, Name, Quantity
+from .messages import explain, nearest, shorten, shown_key
+from .sizes import context
+from .toml import with_library
 from .units import read_number
 
 EXPONENT, INDEX = "hardening_exponent", "meyer_index"
@@ -51,6 +53,26 @@ class LawMaterial(Material):
             shown = f"materials.{name}.{shown_key(key)} = {shorten(repr(value))}"
             raise CaseError(f"{shown}, unknown key with law {law}; the nearest: {nearest(key, known)}")
         return None if own is None else read_number(f"materials.{name}.{strength}", own, "Pa")
+
+
+class AnyCase(Frozen):
+    """What impacts and scenes begin with: name and materials."""
+
+    case: Header
+    materials: dict[Name, LawMaterial]
+
+    @property
+    def name(self) -> str:
+        return self.case.name
+
+    @classmethod
+    def read(cls, data: dict[str, Any], path: object, kind: str) -> Self:
+        """A case from TOML data; `path` names the place in messages. Raises CaseError."""
+        data = with_library(data, path)
+        try:
+            return cls.model_validate(data, context=context(path))
+        except ValidationError as error:
+            raise CaseError(explain(path, data, error, kind)) from None
 
 
 def law_keys(law: Declaration) -> dict[str, str | None]:

@@ -5,29 +5,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, PlainValidator, ValidationError, model_validator
+from pydantic import Field, PlainValidator, model_validator
 
-from ..errors import CaseError
-from .fields import (
-    Coefficient,
-    Frozen,
-    Header,
-    Length,
-    Name,
-    Quantity,
-    Restitution,
-    Speed,
-    Tangential,
-    Viscous,
-)
+from .fields import Coefficient, Frozen, Length, Name, Quantity, Restitution, Speed, Tangential, Viscous
 from .kinds import Keys, parts, read_scene
-from .law import LawChoice, LawMaterial, check_law
-from .messages import explain
+from .law import AnyCase, LawChoice, check_law
 from .outputs import MeasuredDensities
 from .parts import Parts
 from .places import PartName
-from .sizes import Share, context
-from .toml import KIND, read_toml, with_library
+from .sizes import Share
+from .toml import KIND, read_toml
 from .walls import Time
 
 
@@ -115,11 +102,9 @@ class SceneNumerics(Frozen):
     seed: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
-class SceneCase(Frozen):
+class SceneCase(AnyCase):
     """One bulk scene."""
 
-    case: Header
-    materials: dict[Name, LawMaterial]
     law: LawChoice
     scene: Annotated[Keys | Parts, PlainValidator(read_scene)]
     viscous: Viscous | None = None
@@ -152,10 +137,6 @@ class SceneCase(Frozen):
         return self
 
     @property
-    def name(self) -> str:
-        return self.case.name
-
-    @property
     def kind(self) -> str:
         """The name of the kind of scene."""
         return Path(self.scene.kind).name.removesuffix(KIND)
@@ -173,11 +154,7 @@ def is_scene(data: dict[str, Any]) -> bool:
 
 def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
-    data = with_library(data, path)
-    try:
-        return SceneCase.model_validate(data, context=context(path))
-    except ValidationError as error:
-        raise CaseError(explain(path, data, error, "scene")) from None
+    return SceneCase.read(data, path, "scene")
 
 
 def load(path: Path | str) -> SceneCase:

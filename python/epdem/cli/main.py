@@ -123,12 +123,12 @@ def _run_impacts(
     from ..engines import engine as find
     from ..impacts import summary
     from ..impacts.run import run
-    from ..report.pages import write_impacts_page
+    from ..report.pages import write_page
 
     with status() as progress:
         outcome = run(case, engines=[find(name) for name in engines], progress=progress, **options)
         progress("figures")
-        write_impacts_page(outcome, formats)
+        write_page(outcome, formats)
     return answer(summary.document(outcome), summary.shown(outcome, full=full), as_json, outcome.passed)
 
 

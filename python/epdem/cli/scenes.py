@@ -27,7 +27,7 @@ def run_scene(
     from ..base.tables import write_csv
     from ..case.scene import load
     from ..engines import scene_engine
-    from ..report.pages import write_scene_page
+    from ..report.pages import write_page
     from ..scenes.judge import summary
     from ..scenes.plan.plan import plan
     from ..scenes.run import run
@@ -44,7 +44,7 @@ def run_scene(
         outcome = run(case, tool, report=report_step, planned=lambda p: phases.extend(p.phases), **options)
     if csv:
         write_csv(outcome.folder / "contacts.csv", outcome.results.contacts)
-    write_scene_page(outcome, formats)
+    write_page(outcome, formats)
     return answer(summary.document(outcome), summary.shown(outcome), as_json, outcome.passed)
 
 

@@ -67,15 +67,13 @@ def page_of(
     hashes: Mapping[str, object],
     laws: Sequence[str],
     engines: Sequence[str],
-    command: str,
 ) -> Page:
     """The page of a case: these parts, then versions, `hashes` of the inputs by run, and what to cite."""
     cited = Facts("What to cite", citations(outcome.case, laws, engines))
     every = [*parts, origin(outcome.results.attributes, hashes), cited]
-    said = command or f"epdem verify rerun {outcome.folder}/results.h5"
-    title = outcome.case.case.title
+    said = command() or f"epdem verify rerun {outcome.folder}/results.h5"
     passed = outcome.passed if isinstance(outcome, Outcome) or len(outcome.results.tables["checks"]) else None
-    return Page(title, sentences, every, passed=passed, command=said, warnings=outcome.warnings)
+    return Page(outcome.case.case.title, sentences, every, passed=passed, command=said, warnings=outcome.warnings)
 
 
 def write_study_page(page: Page, folder: Path, formats: Sequence[str] = ()) -> Path:
@@ -84,16 +82,18 @@ def write_study_page(page: Page, folder: Path, formats: Sequence[str] = ()) -> P
         return write(folder / NAME, page, formats)
 
 
+def write_page(outcome: Outcome | SceneOutcome, formats: Sequence[str] = ()) -> Path:
+    """Write report.html, and its figures in each of `formats`, into the folder of a run; the path of the page."""
+    with claim(outcome.folder, force=True):  # the picture of a bed is drawn for the page
+        page = impacts_page(outcome) if isinstance(outcome, Outcome) else scene_page(outcome)
+        return write_study_page(page, outcome.folder, formats)
+
+
 COMPARED = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("", "_theory", "_error")))
 OBLIQUE = ("angle", "spin_before", "e_t", "e_t_theory", "psi_1", "psi_2", "psi_2_theory", "psi_2_error", "spin")
 
 
-def write_impacts_page(outcome: Outcome, formats: Sequence[str] = ()) -> Path:
-    """Write report.html, and its figure in each of `formats`, into the folder of a run; the path of the page."""
-    return write_study_page(impacts_page(outcome, command()), outcome.folder, formats)
-
-
-def impacts_page(outcome: Outcome, command: str = "") -> Page:
+def impacts_page(outcome: Outcome) -> Page:
     """The page of a run."""
     results, several = outcome.results, len(outcome.plans) > 1
     parts: list[Part] = [*impacts.charts(outcome), impacts_table(outcome)]
@@ -108,7 +108,6 @@ def impacts_page(outcome: Outcome, command: str = "") -> Page:
         hashes={key: run["inputs"] for key, run in results.runs.items()},
         laws=list(outcome.plans),
         engines=list(dict.fromkeys(results.comparison["engine"])),
-        command=command,
     )
 
 
@@ -190,13 +189,7 @@ TABLES = [
 ]
 
 
-def write_scene_page(outcome: SceneOutcome, formats: Sequence[str] = ()) -> Path:
-    """Write report.html, and its figures in each of `formats`, into the folder of a scene; the path of the page."""
-    with claim(outcome.folder, force=True):  # the picture of the bed is drawn for the page
-        return write_study_page(scene_page(outcome, command()), outcome.folder, formats)
-
-
-def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
+def scene_page(outcome: SceneOutcome) -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
     shown = scenes.charts(outcome)
@@ -224,7 +217,6 @@ def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
         hashes={engine: about["inputs"]},
         laws=[outcome.plan.model.law],
         engines=[engine],
-        command=command,
     )
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of a scene as data, and the picture of its bed."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ from ..case.outputs import MassFlow, ReboundSpeed
 from ..case.parts import MEASURES, Histogram
 from ..jobs.stage import Tables
 from ..scenes.judge import checks
-from ..scenes.judge.measures import FRAME_FIGURES, PRESS_FIGURES, curve
+from ..scenes.judge.measures import PRESS_FIGURES, curve
 from ..scenes.judge.summary import SceneOutcome
 from ..scenes.plan.plan import ScenePlan
 from ..scenes.tables.columns import LOADS, place, units
@@ -193,10 +192,7 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     return found
 
 
-OF_CHECK: dict[type, Callable[[ScenePlan, Tables], list[Panel]]] = {
-    MassFlow: _mass_flow,
-    ReboundSpeed: _rebound_speed,
-}
+OF_FRAMES = {"mass_flow": _mass_flow, "rebound_speed": _rebound_speed}
 
 
 def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
@@ -204,10 +200,10 @@ def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
     found: list[Panel] = []
     for name in (name for name in p.scene.key_figure if name not in PRESS_FIGURES):
-        if name not in FRAME_FIGURES:
+        if name not in OF_FRAMES:
             found += _column(p, tables, name)
         elif frames:
-            found += OF_CHECK[FRAME_FIGURES[name]](p, tables)
+            found += OF_FRAMES[name](p, tables)
     return found if p.scene.key_figure else _moving_walls(p, tables)
 
 

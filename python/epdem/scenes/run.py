@@ -63,7 +63,6 @@ def run(
     with error_context(place):
         p = plan(model)
         measures.refuse_measures(p)
-        measures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
         notes = [*check(engine, p), *planned_warnings(p), *case_warnings(model), *domain]
     planned(p)
@@ -104,8 +103,11 @@ def run(
 
         known = results.engine_tables(p, old.tables) if old else ended
         done = stage(given, compute, Stage(given, known, {"seconds": 0.0}) if known else None)
-        for resumed in continued:
-            notes += _left_out(folder, resumed)
+        if continued and (lost := continued[0].lost):
+            steps = f"step{'s' * (len(lost) > 1)} {', '.join(map(str, lost))}"
+            notes.append(
+                f"{folder}: frames of {steps} are missing or not whole, and left out; --fresh runs the scene anew"
+            )
         ran = _as_run(p, done.tables)
         tables = _judge(ran, done.tables, folder)
         about = {
@@ -148,14 +150,6 @@ def _refuse_resume(kept: ResultsFolder, given: Inputs, versions: dict[str, str])
         was, now = (", ".join(f"{k} {v}" for k, v in found.items()) for found in (kept.versions, versions))
         begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
         raise CaseError(f"{begun}; run it anew (--fresh)")
-
-
-def _left_out(folder: Path, resumed: Resumed) -> list[str]:
-    """A sentence on frames that are not whole."""
-    if not resumed.lost:
-        return []
-    steps = ("step " if len(resumed.lost) == 1 else "steps ") + ", ".join(map(str, resumed.lost))
-    return [f"{folder}: the frames of {steps} are missing or not whole, and left out; --fresh runs the scene anew"]
 
 
 def _as_run(p: ScenePlan, tables: Tables) -> ScenePlan:

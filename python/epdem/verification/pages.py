@@ -22,7 +22,7 @@ LABELS = {"e_n": "e_n", "dent_width": "width of the dent [m]"}
 
 def of_crosscheck(check: Crosscheck) -> Path:
     """Write the page of a run on all engines with the table of models in front."""
-    base = common.impacts_page(check.outcome, common.command())
+    base = common.impacts_page(check.outcome)
     models = len(check.table) - 1
     said = [f"{models} models ran the case; their values are those at {check.table['speed'].iloc[0]:.4g} m/s."]
     if check.others_outside:

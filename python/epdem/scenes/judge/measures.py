@@ -24,15 +24,11 @@ PRESS_FIGURES = ("punch_force", "densification", "heckel", "kawakita", "springba
 SURFACE = 0.95  # of the mass of a bed, nearest to its middle: beyond it single spheres have rolled away
 
 
-def refuse_color(p: ScenePlan) -> None:
-    """Raise CaseError for a field of output.color that the frames do not hold."""
-    known = ["speed", "energy", *columns_of_frames(p)]
-    if p.output.color not in known:
-        raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
-
-
 def refuse_measures(p: ScenePlan) -> None:
-    """Raise CaseError for measures and key figures that the scene cannot give."""
+    """Raise CaseError for measures, key figures and colours that the scene cannot give."""
+    fields = ["speed", "energy", *columns_of_frames(p)]
+    if p.output.color not in fields:
+        raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(fields)}")
     s = p.scene
     names, taken = [m.name for m in s.measure], columns_of_rows(p)
     figures = [*sorted({*taken, *names} - {"step", "time"}), *(PRESS_FIGURES if s.stages else ())]

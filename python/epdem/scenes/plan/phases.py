@@ -12,6 +12,7 @@ from ...case.walls import CasePhase
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
+LOOKED = ("held", "value", "opposite", "force")  # what a look at a condition has found
 MISS = 2e-3  # of a limit, by which a force that comes near it may fall short of it
 # of a limit: a wall whose force comes so near slows in proportion to what is left; beyond the limit it goes back, ten
 # times slower, so that it does not swing where a step alone changes the force by as much

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
@@ -33,7 +33,7 @@ from .limits import (
     refuse_walls_at_faces,
 )
 from .model import Model, model
-from .phases import NO_VOID, NOT_REACHED, REACHED, Phase, PhaseSteps
+from .phases import LOOKED, NO_VOID, NOT_REACHED, REACHED, Phase, PhaseSteps
 from .quantities import WORKS
 from .timestep import time_step, unstable_steps
 
@@ -141,9 +141,8 @@ class ScenePlan:
             end = phases[-1].end if solid else ends.get(phase.name, phase.end + shift)
             shift = end - phase.end
             word = NO_VOID if solid else reached.get(phase.name, REACHED if phase.case.condition else phase.reached)
-            names = ("held", "value", "opposite", "force")
-            known = dict(zip(names, held.get(phase.name, [getattr(phase, name) for name in names]), strict=True))
-            phases.append(replace(phase, end=end, reached=word, **known))
+            looked: dict[str, Any] = dict(zip(LOOKED, held[phase.name], strict=True)) if phase.name in held else {}
+            phases.append(replace(phase, end=end, reached=word, **looked))
         return replace(self, phases=tuple(phases))
 
     def with_ways(self, rows: pd.DataFrame) -> "ScenePlan":
@@ -195,7 +194,7 @@ class ScenePlan:
         names = [phase.name for phase in self.phases]
         table = {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
         held = [phase.end if phase.held is None else phase.held for phase in self.phases]
-        looked = {name: [getattr(x, name) for x in self.phases] for name in ("value", "opposite", "force")}
+        looked = {name: [getattr(x, name) for x in self.phases] for name in LOOKED[1:]}
         return pd.DataFrame(table | {"until": [phase.reached for phase in self.phases], "held": held} | looked)
 
     def time_at(self, steps: np.ndarray) -> np.ndarray:
