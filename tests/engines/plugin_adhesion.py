@@ -2,7 +2,7 @@
 """Scenes of the adhesive models in LIGGGHTS with the theory of their contacts: millimetre spheres that attract hard."""
 
 import numpy as np
-from plugin_decks import GAMMA, NU, P_Y, RHO, Bodies, E, contact, good, head, materials
+from plugin_decks import GAMMA, NU, P_Y, RHO, Bodies, E, deck_of, good, materials
 
 from epdem.theory import adhesion
 from epdem.theory.jkr import JKR
@@ -31,16 +31,10 @@ def spheres(x, v, types=1, radius=R):
 
 def deck(law, *, wall=None, dt, body, every=1, tangential="off", before="", settings="", friction=0.0, top=None):
     """Text of a scene; `body` moves and runs it."""
-    return (
-        head(**(top or {}))
-        + "read_data box.data\nneighbor 2e-4 bin\nneigh_modify delay 0\n"
-        + materials(f"ep/{law}", friction=friction)
-        + before
-        + contact(f"ep/{law}", wall=wall, tangential=tangential, settings=settings)
-        + f"timestep {dt!r}\nthermo_modify lost error norm no\n"
-        + f"dump d all custom {every} out.bin id x y z vx vy vz fx fy fz\ndump_modify d sort id\n"
-        + body
-    )
+    dump = f"dump d all custom {every} out.bin id x y z vx vy vz fx fy fz\ndump_modify d sort id\n"
+    properties = materials(f"ep/{law}", friction=friction) + before
+    words = {"wall": wall, "tangential": tangential, "settings": settings}
+    return deck_of(f"ep/{law}", dump + body, dt=dt, skin=2e-4, properties=properties, move="", top=top, **words)
 
 
 def walls(folder, law, speeds, *, wall="primitive", files=None, steps_in_contact=400, types=1, places=None, before=""):

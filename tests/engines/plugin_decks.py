@@ -198,6 +198,9 @@ fix m2 all property/global poissonsRatio peratomtype {" ".join(map(repr, NU.toli
 {per_pair("coefficientFriction", friction)}{own}"""
 
 
+MOVE = "fix move all nve/sphere\n"
+
+
 def contact(model, *, tangential="history", wall=None, models="", settings=""):
     """Pair style and, if `wall` names one, the wall at z = 0 of type 2; a wall's settings come last."""
     words = f"model {model} tangential {tangential} {models}"
@@ -208,6 +211,13 @@ def contact(model, *, tangential="history", wall=None, models="", settings=""):
         text += "fix plate all mesh/surface file plate.stl type 2\n"
         text += f"fix wall all wall/gran {words} mesh n_meshes 1 meshes plate {settings}\n"
     return text
+
+
+def deck_of(model, body, *, dt=1e-7, skin=1e-3, properties=None, move=MOVE, top=None, **of_contact):
+    """A deck of the spheres of box.data; `body` runs it. top: of `head`, of_contact: of `contact`."""
+    text = head(**(top or {})) + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify delay 0\n"
+    text += (properties or materials(model)) + contact(model, **of_contact)
+    return text + f"timestep {dt!r}\n{move}thermo_modify lost error norm no\n{body}"
 
 
 DUMP = "dump out all custom {every} out.bin id x y z vx vy vz omegax omegay omegaz\n"

@@ -12,7 +12,7 @@ from dataclasses import replace
 from functools import cache, cached_property, partial
 
 import numpy as np
-from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair
+from plugin_decks import DUMP, Bodies, contact, deck_of, good, head, materials, per_pair
 from triangles import plate
 
 CENTRE = 0.09375  # 1.5/16 m: on both sides of a face the coordinates have the same spacing of doubles
@@ -159,16 +159,10 @@ class Suite:
         radius, delta, dt, turn = 2e-3, 2e-5, 1e-7, 1000
         x = np.array([[0, 0, radius - delta / 2], [0, 0, delta / 2 - radius], [0.04, 0, 0], [0.04, 0.03, 0]])
         bodies, box = Bodies(np.array([2, 2, 1, 3]), np.full(4, radius), x, 0 * x), [(-0.02, 0.06)] * 3
-        text = (
-            head()
-            + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
-            + materials(self.model)
-            + contact(self.model, tangential=self.tangential)
-            + f"timestep {dt!r}\nthermo_modify lost error norm no\ngroup one id 1\ngroup two id <= 2\n"
-            + f"dump out one custom {turn} out.bin id fx fy fz\n"
-            + "fix go one move linear 7e-3 3e-3 0\nrun 900\nunfix go\nvelocity all set 0 0 0\nrun 100\n"
-            + f"fix go two move rotate 0 0 0 1 2 2 {turn * dt!r}\nrun {turn}\n"
-        )
+        body = f"group one id 1\ngroup two id <= 2\ndump out one custom {turn} out.bin id fx fy fz\n"
+        body += "fix go one move linear 7e-3 3e-3 0\nrun 900\nunfix go\nvelocity all set 0 0 0\nrun 100\n"
+        body += f"fix go two move rotate 0 0 0 1 2 2 {turn * dt!r}\nrun {turn}\n"
+        text = deck_of(self.model, body, dt=dt, move="", tangential=self.tangential)
         frames = good(self.folder / "revolution", text, files={"box.data": bodies.data(box)}).frames()[1][1:, 0, 1:]
         return np.linalg.norm(frames[-1] - frames[0]) / np.linalg.norm(frames[0])
 
@@ -180,17 +174,9 @@ class Suite:
         ids = np.arange(64, 0, -1) if reverse else None
         bodies = Bodies(rng.integers(1, 4, 64), radius, places, speeds, ids=ids)
         given = materials(self.model, friction=friction)
-        text = (
-            head(ranks=(ranks, 1, 1), sort="0 0")
-            + "read_data box.data\nneighbor 5e-4 bin\nneigh_modify delay 0\n"
-            + given
-            + ("" if "coefficientRestitution" in given else per_pair("coefficientRestitution", 0.6))
-            + contact(self.model, tangential=self.tangential)
-            + f"timestep {dt!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\n"
-            + runs
-            + DUMP.format(every=1)
-            + "run 0\n"
-        )
+        given += "" if "coefficientRestitution" in given else per_pair("coefficientRestitution", 0.6)
+        more = {"properties": given, "tangential": self.tangential, "top": {"ranks": (ranks, 1, 1), "sort": "0 0"}}
+        text = deck_of(self.model, f"{runs}{DUMP.format(every=1)}run 0\n", dt=dt, skin=5e-4, **more)
         name = f"heap-{reverse}-{ranks}-{friction}-{len(runs)}"
         return self.outcome(name, text, bodies=bodies, box=[(-0.02, 0.02)] * 3, ranks=ranks)
 

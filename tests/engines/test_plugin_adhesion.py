@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from plugin_adhesion import BOX, EDGE, TIP, R, deck, mass, spheres, theory, walls
 from plugin_decks import ADHESIVE, P_Y, good, materials, per_pair
-from test_plugin_energy import BOX as CELL
-from test_plugin_energy import SIDES, gas
+from test_plugin_energy import balance
+from test_plugin_energy import deck as gas_deck
 from test_plugin_launch import deck as plain_deck
 from test_plugin_launch import started
 from triangles import plate
@@ -107,32 +107,16 @@ def test_a_pair_turned_through_one_revolution_keeps_its_force(tmp_path, law, sha
 
 
 def books(folder, law, steps, ranks=1):
-    """Rows of step, kinetic, plastic, adhesive, elastic energy [J] of a gas of spheres."""
-    words = f"model ep/{law} tangential off"
-    sides = "".join(
-        f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} computePlasticWork on\n"
-        for k, (side, at) in enumerate(SIDES)
-    )
-    text = deck(
-        law,
-        dt=5e-8,
-        body=f"{sides}fix move all nve/sphere\nundump d\n"
-        "compute s all reduce sum f_plasticWork f_adhesiveWork f_elasticEnergy\ncompute k all ke\n"
-        f"thermo_style custom step c_k c_s[1] c_s[2] c_s[3]\nthermo 97\n"
-        f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n",
-        settings="computePlasticWork on",
-        top={"ranks": (ranks, 1, 1)},
-    )
-    lines = good(folder, text, ranks=ranks, files={"box.data": gas(3.0).data(CELL)}).text.splitlines()
-    rows = [line.split() for line in lines]
-    return np.array([r for r in rows if len(r) == 5 and all(c.lstrip("-")[0].isdigit() for c in r)], float)
+    """Rows of step, kinetic, plastic, elastic, adhesive energy [J] of a gas of spheres."""
+    text = gas_deck(law, steps=steps, every=97, ranks=ranks, more=["adhesiveWork"])
+    return balance(folder, text, ranks, columns=5, speed=3.0)
 
 
 @every_law
 def test_the_energy_balance_closes_with_what_adhesion_takes(tmp_path, law):
     """Without friction no term is a remainder; the sum over 2e4 steps, and the same on two ranks."""
     rows = books(tmp_path / "one", law, 20000)
-    kinetic, plastic, adhesive, elastic = rows[:, 1:].T
+    kinetic, plastic, elastic, adhesive = rows[:, 1:].T
     assert np.abs((kinetic + plastic + adhesive + elastic) / kinetic[0] - 1).max() < 1e-3
     assert adhesive[-1] > 0.01 * kinetic[0]
     assert plastic[-1] == 0 if law == "jkr" else plastic[-1] > 0.05 * kinetic[0]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from plugin_decks import good
-from tutorials import FOLDER, archive, rewritten, unpacked
+from tutorials import FOLDER, archive, need_source, rewritten, unpacked
 
 from epdem.tools.convert import convert
 from marks import thorough
@@ -75,8 +75,7 @@ def test_a_normal_dashpot_needs_no_line_and_without_friction_the_restitution_has
 
 @pytest.mark.parametrize("name", [thorough("packing/in.packing"), "cohesion/in.noCohesion"])
 def test_a_converted_tutorial_runs_and_yields(name, tmp_path):
-    if archive() is None:
-        pytest.skip("LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)")
+    need_source()
     (tmp_path / "deck").mkdir()
     unpacked(name, tmp_path / "deck")
     path = tmp_path / "deck" / name.split("/")[1]
@@ -90,8 +89,7 @@ def test_a_converted_tutorial_runs_and_yields(name, tmp_path):
 
 
 def test_every_public_tutorial_is_converted_or_refused_with_its_line():
-    if archive() is None:
-        pytest.skip("LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)")
+    need_source()
     import tarfile
 
     converted = 0

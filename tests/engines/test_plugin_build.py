@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, Bodies, contact, good, head, launcher, materials, run
+from plugin_decks import LAWS, Bodies, deck_of, good, launcher, materials, run
 from test_plugin_launch import library
 
 pytestmark = pytest.mark.liggghts
@@ -93,14 +93,9 @@ def touching(how, folder, law, end):
     x = np.array([[-0.00499, 0, 0.005 - 1e-6], [0.00499, 0, 0.005 - 1e-6]])
     v = np.array([[0.5, 0, -0.5], [-0.5, 0, -0.5]])
     bodies = Bodies(np.array([1, 2]), np.full(2, 5e-3), x, v)
-    text = (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\n"
-        + materials("ep/any")
-        + contact(f"ep/{law}", wall="primitive")
-        + "compute c all pair/gran/local history delta\n"
-        f"timestep 1e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {STEPS}\n{end}"
-    )
+    properties = materials("ep/any")
+    text = deck_of(f"ep/{law}", f"run {STEPS}\n{end}", properties=properties, wall="primitive")
+    text = text.replace("timestep", "compute c all pair/gran/local history delta\ntimestep")
     return how(folder, text, files={"box.data": bodies.data(((-0.05, 0.05),) * 2 + ((-0.01, 0.05),))})
 
 

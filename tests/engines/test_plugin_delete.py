@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair
+from plugin_decks import DUMP, Bodies, deck_of, good, materials, per_pair
 
 pytestmark = pytest.mark.liggghts
 
@@ -20,15 +20,10 @@ def bed():
 
 def end(folder, between, *, tangential="history", ranks=1, env=None):
     """Places, velocities and spins at the end, in the order of the places; the second run is one of many contacts."""
-    text = (
-        head(ranks=(ranks, 1, 1))
-        + "read_data box.data\nneighbor 2e-4 bin\nneigh_modify delay 0\n"
-        + materials("ep/thornton")
-        + per_pair("coefficientRollingFriction", 0.1)
-        + contact("ep/thornton", tangential=tangential, models="rolling_friction epsd2")
-        + f"timestep 5e-8\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun 200\n{between}"
-        + f"run 200\n{DUMP.format(every=1)}run 0\n"
-    )
+    properties = materials("ep/thornton") + per_pair("coefficientRollingFriction", 0.1)
+    words = {"tangential": tangential, "models": "rolling_friction epsd2", "top": {"ranks": (ranks, 1, 1)}}
+    body = f"run 200\n{between}run 200\n{DUMP.format(every=1)}run 0\n"
+    text = deck_of("ep/thornton", body, dt=5e-8, skin=2e-4, properties=properties, **words)
     files = {"box.data": bed().data([(-0.01, 0.01)] * 3)}
     rows = good(folder, text, files=files, ranks=ranks, env=env).last[:, 1:]
     return rows[np.lexsort(np.round(rows[:, :3], 5).T)]

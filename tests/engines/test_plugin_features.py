@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import YIELDING, Bodies, contact, good, head, materials
+from plugin_decks import YIELDING, Bodies, deck_of, good, materials
 from triangles import plate
 
 pytestmark = pytest.mark.liggghts
@@ -21,19 +21,8 @@ def spheres(n=8, speed=2.0):
     return Bodies(rng.integers(1, 4, n * n), radius, x, v)
 
 
-def deck(law, *, wall="mesh", before="", after="", steps=400, integrate="fix move all nve/sphere\n", ranks=(1, 1, 1)):
-    return (
-        head(ranks=ranks)
-        + "read_data box.data\nneighbor 1e-3 bin\n"
-        + materials("ep/any")
-        + before
-        + contact(f"ep/{law}", wall=wall)
-        + "timestep 1e-7\n"
-        + integrate
-        + "thermo_modify lost error norm no\n"
-        + after
-        + f"run {steps}\n"
-    )
+def deck(law, *, wall="mesh", after="", steps=400):
+    return deck_of(f"ep/{law}", f"{after}run {steps}\n", properties=materials("ep/any"), wall=wall)
 
 
 def start(folder, text, *, n=8, ranks=1, **files):

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair
+from plugin_decks import DUMP, Bodies, deck_of, good, materials, per_pair
 
 pytestmark = pytest.mark.liggghts
 BOX = [(-0.05, 0.2), (-0.05, 0.05), (-0.01, 0.06)]
@@ -24,10 +24,8 @@ def final(folder, model):
         "coefficientRestitution peratomtypepair 3 " + " ".join(["0.7"] * 9),
         "coefficientRestitution peratomtypepair 3 " + " ".join(["1.0"] * 9),
     )
-    deck = head() + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n" + properties
-    deck += contact(model, wall="primitive", models="rolling_friction cdt")
-    deck += "timestep 1e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\n"
-    deck += "run 2000\n" + DUMP.format(every=1) + "run 0\n"
+    body = f"run 2000\n{DUMP.format(every=1)}run 0\n"
+    deck = deck_of(model, body, properties=properties, wall="primitive", models="rolling_friction cdt")
     return good(folder, deck, files={"box.data": Bodies(kinds, R, x, v, w).data(BOX)}).last
 
 

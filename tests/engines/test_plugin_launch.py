@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, Bodies, contact, good, head, launcher, materials, run
+from plugin_decks import LAWS, Bodies, deck_of, good, launcher, materials, run
 
 from marks import thorough
 
@@ -39,24 +39,9 @@ def bodies():
     return Bodies(np.array([1, 2, 3]), np.full(3, 5e-3), x, np.tile([0.3, 0, -1.0], (3, 1)))
 
 
-def deck(
-    model="ep/thornton",
-    *,
-    edit=lambda text: text,
-    properties=None,
-    models="",
-    settings="",
-    tangential="history",
-    steps=50,
-):
-    text = (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\n"
-        + (properties or materials("ep/any"))
-        + contact(model, wall="primitive", models=models, settings=settings, tangential=tangential)
-        + f"timestep 1e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {steps}\n"
-    )
-    return edit(text)
+def deck(model="ep/thornton", *, edit=lambda text: text, properties=None, steps=50, **of_contact):
+    properties = properties or materials("ep/any")
+    return edit(deck_of(model, f"run {steps}\n", properties=properties, wall="primitive", **of_contact))
 
 
 def refusal(folder, text, **kwargs):

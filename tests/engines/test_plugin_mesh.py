@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from plugin_decks import Bodies, contact, good, head, materials, per_pair, run
+from plugin_decks import Bodies, contact, deck_of, good, head, materials, per_pair, run
 from triangles import cube, fold
 
 from epdem.scenes.plan.meshes import stl_text
@@ -160,14 +160,8 @@ def on_wall(folder, starts, wall, loop=""):
     n = len(starts)
     x, v = np.array([s[0] for s in starts]), np.array([s[1] for s in starts])
     data = Bodies(np.arange(n) % 3 + 1, np.full(n, RADIUS), x, v, np.zeros((n, 3))).data(((-0.5, 0.5),) * 3)
-    text = (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\n"
-        + materials("ep/thornton")
-        + contact("ep/thornton", wall="primitive" if wall is None else "mesh")
-        + "timestep 2e-8\nfix move all nve/sphere\n"
-        + f"dump d all custom 10000 out.bin {COLUMNS}\nrun 10000\n"
-    )
+    body = f"dump d all custom 10000 out.bin {COLUMNS}\nrun 10000\n"
+    text = deck_of("ep/thornton", body, dt=2e-8, wall="primitive" if wall is None else "mesh")
     files = {"box.data": data} | ({} if wall is None else {"plate.stl": stl_text("plate", np.array(wall))})
     return good(folder, text, files=files, env={"EPDEM_LOOP": loop} if loop else None).last
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, Bodies, contact, good, head, materials
+from plugin_decks import LAWS, Bodies, deck_of, good, materials
 from test_plugin_energy import balance, deck
 
 pytestmark = pytest.mark.liggghts
@@ -22,15 +22,12 @@ def test_a_sheared_pair_that_turns_rigidly_keeps_its_friction(tmp_path, tangenti
     delta, N, dt = 1e-6, 1000, 1e-7
     x = np.array([[0, 0, R - delta / 2], [0, 0, -R + delta / 2], [0.04, 0, 0], [0.04, 0.03, 0]])
     types = np.array([2, 2, 1, 3])
-    text = (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
-        + materials("ep/hertz", friction=MU)
-        + contact("ep/hertz", tangential=tangential)
-        + f"timestep {dt!r}\nthermo_modify lost error norm no\ngroup one id 1\ngroup two id <= 2\n"
-        + "fix go one move linear 2e-3 1e-3 0\nrun 100\nunfix go\ndump out one custom 1 out.bin id x y z fx fy fz\n"
-        + f"fix go two move rotate 0 0 0 {axis} {N * dt!r}\nrun {N}\n"
+    body = "group one id 1\ngroup two id <= 2\nfix go one move linear 2e-3 1e-3 0\nrun 100\nunfix go\n"
+    body += (
+        f"dump out one custom 1 out.bin id x y z fx fy fz\nfix go two move rotate 0 0 0 {axis} {N * dt!r}\nrun {N}\n"
     )
+    properties = materials("ep/hertz", friction=MU)
+    text = deck_of("ep/hertz", body, dt=dt, properties=properties, move="", tangential=tangential)
     box = ((-0.02, 0.06), (-0.02, 0.06), (-0.02, 0.02))
     files = {"box.data": Bodies(types, np.full(4, R), x, 0 * x).data(box)}
     env = {"EPDEM_LOOP": "generic"} if loop == "generic" else {}
@@ -48,7 +45,7 @@ def test_a_sheared_pair_that_turns_rigidly_keeps_its_friction(tmp_path, tangenti
 @pytest.mark.parametrize("law", LAWS)
 def test_the_energy_balance_of_a_rubbing_gas_closes(tmp_path, law):
     """Kinetic (with spin), elastic, plastic, springs of friction, the work that it took: nothing is left over."""
-    text = deck(law, steps=20000, every=97, tangential=SLIP)
+    text = deck(law, steps=20000, every=97, tangential=SLIP, more=("frictionWork", "frictionEnergy"))
     rows = balance(tmp_path, text, columns=6)
     kinetic, plastic, elastic, friction, springs = rows[:, 1:].T
     total = kinetic + plastic + elastic + friction + springs

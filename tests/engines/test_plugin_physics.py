@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import DUMP, NU, P_Y, Bodies, E, Y, contact, good, head, materials
+from plugin_decks import DUMP, NU, P_Y, Bodies, E, Y, deck_of, good, materials
 
 pytestmark = pytest.mark.liggghts
 
@@ -15,36 +15,13 @@ def e_star(i, j):
     return 1 / ((1 - NU[i - 1] ** 2) / E[i - 1] + (1 - NU[j - 1] ** 2) / E[j - 1])
 
 
-def wall_impacts(
-    folder,
-    model,
-    types,
-    v,
-    w=None,
-    *,
-    dt=2e-8,
-    steps=8000,
-    friction=0.0,
-    dump="",
-    properties=None,
-    tangential="history",
-):
+def wall_impacts(folder, model, types, v, w=None, *, dt=2e-8, steps=8000, properties=None):
     """Spheres of radius R on the wall of type 2; final frame with columns id x y z v w."""
     n = len(types)
     x = np.array([[0.012 * k, 0.0, R + 0.5 * dt * abs(v[k][2])] for k in range(n)])
     bodies = Bodies(np.array(types), np.full(n, R), x, np.asarray(v, float), w)
-    text = (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
-        + (properties or materials(model, friction=friction))
-        + contact(model, wall="primitive", tangential=tangential)
-        + f"timestep {dt!r}\nfix move all nve/sphere\n"
-        + "thermo_modify lost error norm no\n"
-        + dump
-        + f"run {steps}\n"
-        + DUMP.format(every=1)
-        + "run 0\n"
-    )
+    body = f"run {steps}\n{DUMP.format(every=1)}run 0\n"
+    text = deck_of(model, body, dt=dt, properties=properties or materials(model, friction=0.0), wall="primitive")
     return good(folder, text, files={"box.data": bodies.data(BOX)})
 
 

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, head, materials
+from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, deck_of, good
 from plugin_loop import ADHESIVE, SPACING, Scene, bodies, covering, deck, outcome
 from triangles import plate
 
@@ -31,13 +31,8 @@ def rows(text):
 
 def impact(law, wall, *, steps, every):
     """An aluminium sphere of 5 mm on a steel wall, frictionless."""
-    return (
-        head()
-        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
-        + materials(f"ep/{law}")
-        + contact(f"ep/{law}", tangential="off", wall=wall, settings=ON)
-        + f"timestep 2e-8\nfix move all nve/sphere\n{ROWS}thermo {every}\nrun {steps}\n"
-    )
+    body = f"{ROWS}thermo {every}\nrun {steps}\n"
+    return deck_of(f"ep/{law}", body, dt=2e-8, tangential="off", wall=wall, settings=ON)
 
 
 def files(speed=10.0):

@@ -9,7 +9,7 @@ import os
 import numpy as np
 import pytest
 from plugin_decks import good
-from tutorials import STEPS, archive, decks, rewritten, unpacked
+from tutorials import STEPS, decks, need_source, rewritten, unpacked
 
 from epdem.tools.deck_checks import check
 from marks import thorough
@@ -17,7 +17,6 @@ from marks import thorough
 pytestmark = pytest.mark.liggghts
 SHORT = ["packing/in.packing", "heatTransfer_1/in.heatGran"]
 CHOSEN = list(STEPS) if os.environ.get("EPDEM_TUTORIALS") == "all" else SHORT
-MISSING = "LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)"
 YIELD = "fix yp all property/global yieldPressure peratomtype 1e5\n"
 
 
@@ -36,8 +35,7 @@ def rows(name, folder, model, **changes) -> np.ndarray:
 
 @pytest.mark.parametrize("name", [thorough(name, unless=CHOSEN is not SHORT or name == SHORT[0]) for name in CHOSEN])
 def test_a_tutorial_has_the_rows_of_hertz_and_loses_energy_where_it_yields(name, tmp_path):
-    if archive() is None:
-        pytest.skip(MISSING)
+    need_source()
     hertz = rows(name, tmp_path / "hertz", "hertz")
     ours = rows(name, tmp_path / "ours", "ep/hertz")
     soft = rows(name, tmp_path / "soft", "ep/thornton", extra=YIELD)
@@ -49,8 +47,7 @@ def test_a_tutorial_has_the_rows_of_hertz_and_loses_energy_where_it_yields(name,
 
 
 def test_no_tutorial_has_an_input_that_the_check_names():
-    if archive() is None:
-        pytest.skip(MISSING)
+    need_source()
     found = decks()
     assert len(found) > 20
     assert [sentence for name, text in found.items() for sentence in check(text, name)] == []

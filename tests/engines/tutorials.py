@@ -13,6 +13,8 @@ import tarfile
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 CACHE = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "epdem"
 KEYS = "/usr/share/keyrings/debian-archive-keyring.gpg"
 SOURCE = f"deb-src [signed-by={KEYS}] http://deb.debian.org/debian bookworm main\n"
@@ -45,6 +47,12 @@ def archive() -> Path | None:
         except (OSError, subprocess.TimeoutExpired):
             return None
     return kept if kept.exists() else None
+
+
+def need_source() -> None:
+    """Skip a test without LIGGGHTS's source."""
+    if archive() is None:
+        pytest.skip("LIGGGHTS's source is not in the cache and cannot be had from Debian (apt-get source liggghts)")
 
 
 def decks() -> dict[str, str]:

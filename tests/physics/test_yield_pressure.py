@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What friction under the pressure of the yielding contact would change: docs/partial_slip.md."""
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from slip import LAWS, V_Y, rebound
-from yield_pressure import HARDENED, IMPACTS, PSI_1, cut_line_load, flatness, springs
 
 from epdem.theory.numerics import gauss
 from epdem.theory.partial_slip import line_load
+
+sys.path.append(str(Path(__file__).parents[2] / "bench"))
+from yield_pressure import HARDENED, IMPACTS, PSI_1, cut_line_load, flatness, springs
 
 
 @pytest.mark.parametrize(("law", "unit"), IMPACTS, ids=lambda x: getattr(x, "name", ""))

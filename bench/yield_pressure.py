@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Friction under the pressure that a law has while it yields, in place of Hertz's: the table of docs/partial_slip.md.
 
-.venv/bin/python tests/physics/yield_pressure.py
+.venv/bin/python bench/yield_pressure.py
 """
 
+import sys
+from pathlib import Path
+
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "physics"))
+
 from slip import G_STAR, KAPPA, LAWS, MU, PAIR, V_Y, M, rebound
 
 from epdem.theory import restitution
