@@ -71,7 +71,6 @@ EXCLUDED = [
     (FRAMELESS | {"measure": set(SLOTS["measure"]) - OF_ROWS}, "taken from frames"),
     (FRAMELESS | with_key("stress"), "written with the frames"),
     (FRAMELESS | with_key("wear"), "written with the frames"),
-    (with_key("wear") | {"output": {"restarts"}}, "lack the wear of wall"),
     (NOT_LINEAR | {"output": {"restarts"}}, "only walls with linear motions"),
     ({"room": {"periodic", "periodic along x", "periodic along y"}, "walls": ACROSS}, "along which the room repeats"),
     ({"mixture": {"rare component first"}}, "of one sphere of steel, so that the fill has none"),

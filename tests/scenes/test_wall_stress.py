@@ -16,6 +16,8 @@ from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan.plan import plan
 
+ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("lammps", marks=pytest.mark.lammps)]
+
 
 def scene(*, wear=None, friction=0.0, **output):
     data = parts(
@@ -51,6 +53,18 @@ def test_wear_grows_and_is_proportional_to_its_constant(tmp_path):
     one, two = wear.values()
     assert (one.diff().iloc[1:] >= 0).all(axis=None) and one.iloc[-1].max() > 0 and not one.iloc[0].any()
     assert two.to_numpy() == pytest.approx(2 * one.to_numpy(), rel=1e-9)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_continued_run_knows_the_wear(engine, tmp_path):
+    path, out = write_case(scene(wear="1e-9 m^2/N", friction=0.3, restarts=4), tmp_path), tmp_path / "out"
+    whole = run(path, engine, out=out)
+    for frame in out.glob(f"particles.{whole.plan.steps}.*"):
+        frame.unlink()
+    again = run(path, engine, out=out, resume=True, force=True)
+    assert again.resumed_from and again.results.walls.equals(whole.results.walls)
+    wear = whole.results.walls.groupby("step")["wear"].sum()
+    assert wear.iloc[-1] > wear.iloc[-2] > 0
 
 
 def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "iron"), spheres=("glass", "glass")):

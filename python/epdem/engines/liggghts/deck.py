@@ -148,10 +148,6 @@ def _refuse_restarts(p: ScenePlan) -> None:
         raise Unsupported(
             "output.restarts: in LIGGGHTS only walls with linear motions go on where they were", "remove it"
         )
-    for name in (n for n, mesh in p.scene.meshes.items() if p.restarts and mesh.wear):
-        raise Unsupported(
-            f"output.restarts: LIGGGHTS's restart files lack the wear of wall {name}", "remove one of both"
-        )
 
 
 @dataclass(frozen=True)
