@@ -10,6 +10,7 @@
 #include "domain.h"
 #include "epdem/adhesive.hpp"
 #include "epdem/compaction.hpp"
+#include "epdem/sub_models.hpp"
 #include "error.h"
 #include "force.h"
 #include "kernels/gather.hpp"
@@ -350,6 +351,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   single_[1] = models_.law->most < 0 ? overlap : std::max(overlap, history[models_.law->most]);
   single_[2] = b.contact_radius.a[0];
   single_[3] = layout_.gap.root < 0 || history[layout_.gap.root] > 0.0;
+  if (models_.cohesion == bond_place) single_[3] = !broken_of(history.data() + layout_.gap.growth);
   if (layout_.gap.growth >= 0) {
     single_[4] = added_overlap_of(history.data() + layout_.gap.growth);
     single_[5] = screening_of(history.data() + layout_.gap.growth);

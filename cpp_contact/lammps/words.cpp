@@ -322,8 +322,10 @@ kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& m
     fail(lmp, place + ": cohesion " + names<Cohesions>()[models.cohesion] + " beside " + models.law->name +
                   ", which attracts by itself; remove one");
   const kernels::Kernels& set = kernels_of(lmp);
-  if (models.compaction && models.cohesion)
+  if (models.compaction && models.cohesion && models.cohesion != bond_place)
     fail(lmp, place + ": compaction beside cohesion " + names<Cohesions>()[models.cohesion] + "; remove one");
+  if (models.cohesion == bond_place && !models.compaction)
+    fail(lmp, place + ": cohesion bond needs compaction on, whose contacts it holds; give it, or remove the cohesion");
   const int law = models.law->place, friction = models.friction;
   const kernels::Kernel kernel =
       models.compaction ? set.grown[law][friction][wall][complete] : set.of[law][friction][wall];

@@ -145,6 +145,7 @@ class LawModel : public NormalModel {
       growth = growing_at_wall(s.radi, growth_.of(s.i), known);
     else
       growth = growing_pair(s.radi, s.radj, growth_.of(s.i), growth_.of(s.j), known);
+    if (bonds_) growth.bond = bond_[s.itype][s.jtype];
     const NormalContact<Law> contact = normal(growth);
     if (!keep) return contact;
     std::memcpy(state, &growth.state, sizeof growth.state);

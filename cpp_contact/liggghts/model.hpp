@@ -142,7 +142,7 @@ class Model : public ContactModelBase {
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
     surface_.postSettings(setup, this);
-    normal_->postSettings(setup, adds_friction(ids_), ids_.cohesion != COHESION_OFF);
+    normal_->postSettings(setup, adds_friction(ids_), ids_.cohesion);
     cohesion_.postSettings(setup, this);
     tangential_.postSettings(setup, this);
     rolling_.postSettings(setup, this);

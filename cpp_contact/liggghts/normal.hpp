@@ -46,9 +46,11 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     settings.registerOnOff("disableNormalWhenBonded", disable_when_bonded_, false);
   }
 
-  /// adds_friction: the tangential model beside it computes its work.
-  void postSettings(LIGGGHTS::IContactHistorySetup* setup, bool adds_friction, bool cohesion) {
+  /// adds_friction: the tangential model beside it computes its work. cohesion: id of the model.
+  void postSettings(LIGGGHTS::IContactHistorySetup* setup, bool adds_friction, int cohesion) {
     adds_friction_ = adds_friction;
+    bonds_ = cohesion == Bond::id;
+    if (bonds_ && !compaction_) fail("cohesion ep/bond holds contacts with compaction: add compaction on");
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
     if (law_.adheres && limit_force_) refuse("limitForce", "it would take the attraction away");
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
@@ -62,7 +64,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (!compaction_) return;
     if (!law_.compacts) refuse("compaction", "only ep/cavity has it");
     if (!setup) refuse("compaction", "the loops of LIGGGHTS-PFM do not have it");
-    if (cohesion) refuse("compaction", "it is for contacts without cohesion");
+    if (cohesion && !bonds_) refuse("compaction", "it is for contacts without cohesion, or with ep/bond");
     if (!wall_) Growth::create(lmp);
     for (const char* slot : GrowthState<double>::slots) {
       const int at = setup->add_history_value(slot, "0");
@@ -88,6 +90,10 @@ class NormalModel : protected LAMMPS_NS::Pointers {
       fail("the pair style has compaction on, and this wall needs it, too");
     if (!compaction_) return;
     growth_.connect(lmp, law_.model);
+    if (bonds_) {
+      registry.registerProperty("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity);
+      registry.connect("cohEnergyDens", bond_, law_.model.c_str());
+    }
     register_contact_distance(lmp, 1.0 + growth_reach);
   }
 
@@ -209,7 +215,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   int width_ = 0, offset_ = 0, step_slot_ = -1;
   GapPlaces gap_;
   double now_ = 0.0;
-  bool plastic_work_ = false, contact_strain_ = false, compaction_ = false;
+  bool plastic_work_ = false, contact_strain_ = false, compaction_ = false, bonds_ = false;
+  double** bond_ = nullptr;  // strengths of bonds [Pa] by types
   EnergyTally tally_;
   LargestStrain strain_;
   Growth growth_;

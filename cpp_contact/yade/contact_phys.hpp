@@ -28,6 +28,7 @@ class EpPhys : public FrictPhys {
           [](EpPhys& p) { return p.grownOverlap(); });
       add(python, "bodyPressure", "pressure [Pa] of the bodies that their growth carries, with compaction",
           [](EpPhys& p) { return p.bodyPressure(); });
+      add(python, "brokenBond", "1: the bond of this contact has broken", [](EpPhys& p) { return p.brokenBond(); });
       for (int k = 0; k < iy::parameter_count; ++k)
         if (iy::is_first(k)) {
           const epdem::Parameter& p = *iy::parameters[k].declared;
@@ -83,6 +84,7 @@ class EpPhys : public FrictPhys {
   double screening() const { return growthAt() < 0 ? 0.0 : epdem::screening_of(&history[growthAt()]); }
   double grownOverlap() const { return growthAt() < 0 ? 0.0 : epdem::grown_overlap_of(&history[growthAt()]); }
   double bodyPressure() const { return growthAt() < 0 ? 0.0 : epdem::body_pressure_of(&history[growthAt()]); }
+  double brokenBond() const { return growthAt() < 0 ? 0.0 : epdem::broken_of(&history[growthAt()]); }
 
   boost::python::dict pyDictCustom() const override {
     namespace iy = epdem::in_yade;
@@ -112,7 +114,7 @@ class EpPhys : public FrictPhys {
     ((Real, en, 1., Attr::readonly, "restitution of the normal dashpot in slow impacts without yield; 1: none"))
     ((Real, es, 1., Attr::readonly, "restitution of the dashpot beside friction; 1: none"))
     ((Real, rollingFriction, 0., Attr::readonly, "coefficient of rolling friction"))
-    ((Real, cohesionEnergyDensity, 0., Attr::readonly, "energy density of cohesion [J/m^3]"))
+    ((Real, cohesionEnergyDensity, 0., Attr::readonly, "energy density of cohesion [J/m^3], strength of a bond [Pa]"))
     ((Real, plasticWork, 0., Attr::readonly, "plastic work of this contact so far [J], with O.trackEnergy"))
     ((Real, elasticEnergy, 0., Attr::readonly, "elastic energy [J] of the normal force, with O.trackEnergy; with adhesion less the surface energy"))
     ((Real, adhesionLoss, 0., Attr::readonly, "energy that adhesion lost in touch and parting [J], with O.trackEnergy"))

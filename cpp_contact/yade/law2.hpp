@@ -25,7 +25,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     ((string, tangential, "history", Attr::triggerPostLoad, "friction: off, no_history (dashpot of restitution es), history (one spring of stiffness 8 G* a up to Coulomb's limit, Cundall and Strack 1979), partial_slip or partial_slip_2 (partial slip of the contact circle by 3 or 2 nodes)"))
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
-    ((string, cohesion, "off", Attr::triggerPostLoad, "cohesion beside a law without adhesion: off, sjkr (cohesionEnergyDensity times the area of the overlap's lens) or sjkr2"))
+    ((string, cohesion, "off", Attr::triggerPostLoad, "cohesion beside a law without adhesion: off, sjkr (cohesionEnergyDensity times the area of the overlap's lens), sjkr2, or with compaction bond (cohesionEnergyDensity is its strength [Pa])"))
     ((bool, compaction, false, Attr::triggerPostLoad, "whether spheres grow at each contact by the dents of their other contacts, of cavity; takes :yref:`EpGrowth`, Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25) and Ig2_..._ScGeomGrown in place of Ig2_..._ScGeom"))
     ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
     ((Real, largestRadiusRatio, 0., Attr::readonly, "largest strain w a/R* of all contacts so far, w: share of the weaker body"))
@@ -123,8 +123,10 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     namespace iy = epdem::in_yade;
     if (epdem::adheres<Law> && cohesionModel_ != 0)
       iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': the law has its adhesion already, must be off");
-    if (compaction && cohesionModel_ != 0)
-      iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': contacts with compaction have none, must be off");
+    if (compaction && cohesionModel_ != 0 && cohesionModel_ != epdem::bond_place)
+      iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': contacts with compaction have bond or none");
+    if (!compaction && cohesionModel_ == epdem::bond_place)
+      iy::refuse(getClassName() + ".cohesion = 'bond': it holds contacts with compaction; give compaction = True");
     if (compaction) EpFindsGrown::require(*scene, getClassName());
     double values[Law::n_parameters + 1];
     const string bodies = "bodies " + std::to_string(contact.getId1()) + " and " + std::to_string(contact.getId2());

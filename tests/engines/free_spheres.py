@@ -122,6 +122,7 @@ def liggghts(folder, s):
     (rolling, mu_r), (cohesion, density) = s.rolling, s.cohesion
     slip = s.tangential.replace("partial", "ep/partial")
     rubs = " f_frictionWork f_frictionEnergy" * ("partial" in slip)
+    cohesion = cohesion.replace("bond", "ep/bond")
     words = f"model ep/{s.law} tangential {slip} cohesion {cohesion} rolling_friction {rolling}"
     settings = "computePlasticWork on" + " compaction on" * s.compaction + " viscous on" * (s.restitution is not None)
     per_type = {"youngsModulus": "E", "poissonsRatio": "nu"} | {name: name for name in s.names()}

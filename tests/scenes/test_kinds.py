@@ -118,7 +118,7 @@ def test_a_mistake_in_a_table_names_its_line(old, new, words, mill):
         ({"kind": "./kiln.toml.j2"}, "kiln.toml.j2: no such file"),
         (
             {"kind": "mill"},
-            "scene.kind = 'mill', must be one of 'compaction', 'drum', 'hopper', 'peening', 'press', 'settle', ",
+            "scene.kind = 'mill', must be one of 'brazilian', 'compaction', 'drum', 'hopper', 'peening', 'press', ",
         ),
     ],
 )
@@ -177,7 +177,7 @@ def test_a_message_names_the_particles_of_a_kind_without_places(mill):
 def test_no_word_of_a_kind_stands_below_the_room_of_cases():
     """Names of kinds and of their walls, in code and templates; `compaction` is also an option of laws."""
     names = sorted(path.name.removesuffix(".toml.j2") for path in (ROOT / "templates/kinds").iterdir())
-    assert names == ["compaction", "drum", "hopper", "peening", "press", "settle"]
+    assert names == ["brazilian", "compaction", "drum", "hopper", "peening", "press", "settle"]
     words = rf"\b(Preset|{'|'.join(name.title() for name in names)})\b|[\"'](settle|hopper|drum|peening)[\"']"
     words += r"|\b(plate_force|plate_z|press_z)\b|f_(drum|plate|floor)\b"
     product = ROOT / "python/epdem"

@@ -47,6 +47,7 @@ BY_HAND = {
     "lateral",
     "liggghts_speed",
     "reliability",
+    "tablets",
 }  # CONTRIBUTING.md
 
 

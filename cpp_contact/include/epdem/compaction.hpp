@@ -17,6 +17,10 @@
 //    2/3 Y + P, P: mean pressure of the body, sum F (R - d)/(3 V), the largest so far. Of the force of the law, what
 //    growth adds to it by the hardness gives way to the area that growth adds times 2/3 Y + P, in the share m.
 // The law is that of the overlap alpha + v, v = u + q.
+// 5. Bond, where a pair has a strength. Two spheres that have yielded hold together by the circle of radius a_m of
+//    their largest overlap: below the overlap alpha_p at which the law has no force they pull as a punch of this
+//    circle, 2 (E*/G) a_m (alpha_p - alpha). The bond breaks at strength times pi a_m^2, for as long as the contact
+//    lasts, or ends with the contact.
 #pragma once
 
 #include "law.hpp"
@@ -78,7 +82,8 @@ template <class T>
 struct GrowthState {
   static constexpr const char* slots[] = {"step_overlap", "added_overlap", "screened_overlap", "raw_screening",
                                           "screening",    "own_growth",    "dented_area",      "unstored_work",
-                                          "step_growth",  "grown_overlap", "step_pressure",    "body_pressure"};
+                                          "step_growth",  "grown_overlap", "step_pressure",    "body_pressure",
+                                          "broken"};
   T last;           // u + q of the sums of the step before [m]
   T added;          // v [m]: u + q extrapolated to the step
   T shift;          // q [m]
@@ -91,6 +96,7 @@ struct GrowthState {
   T grown;          // u extrapolated to the step [m], in `added`
   T last_pressure;  // P of the sums of the step before [Pa]
   T pressure;       // the same extrapolated to the step, which the force uses
+  T broken;         // 1: the bond of this contact has broken
 };
 
 inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double);
@@ -103,6 +109,8 @@ inline double screening_of(const double* state) noexcept { return state[4]; }
 inline double grown_overlap_of(const double* state) noexcept { return state[9]; }
 /// P [Pa] of the same.
 inline double body_pressure_of(const double* state) noexcept { return state[11]; }
+/// Whether the bond of the same has broken.
+inline bool broken_of(const double* state) noexcept { return state[12] > 0.0; }
 
 /// A contact that grows, in one step.
 template <bool wall, class T>
@@ -112,6 +120,7 @@ struct Growing {
   BodySums<T> i, j;
   GrowthState<T> state;  // before the step, then after it
   Dents<T> dents;        // after the step
+  T bond{};              // strength of the bond of two spheres [Pa], 0: none
 
   /// A host may write state and dents here, as soon as they are known.
   void keep() const noexcept {}
@@ -249,6 +258,24 @@ EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies,
   return max(constant<T>(least_screening), gamma + bulk / sqrt(own));
 }
 
+/// A bond after a step; zeros where it is broken.
+template <class T>
+struct Held {
+  T pull, grip;       // its pull and the largest one [N]
+  T stretched, loss;  // its elastic energy, and what it lost as it broke [J]
+};
+
+/// stretch: overlap [m] below that at which the law has no force; whole: the bond had not broken; parts: the contact
+/// ends.
+template <class T, class M, class N>
+[[gnu::noinline]] Held<T> hold(T strength, T modulus, T radius, T stretch, M whole, N parts) noexcept {
+  const T most = strength * pi * radius * radius, k = 2.0 * modulus * radius;
+  const T pull = k * max(T{}, stretch), reached = min(pull, most);
+  const auto holds = whole & !parts & (pull <= most);
+  const T energy = select(whole & (stretch > 0.0), 0.5 * reached * reached / k, T{});
+  return {select(holds, pull, T{}), select(holds, most, T{}), select(holds, energy, T{}), select(holds, T{}, energy)};
+}
+
 }  // namespace detail
 
 /// The overlap v [m] of a step, and u + q that it follows from; the extrapolation makes the error one of second order
@@ -287,6 +314,8 @@ struct GrownStep {
   Number<Law> delta_max;                 // the same after the step
   Number<Law> softness;                  // G
   Number<Law> whole;                     // force of the law alone at a peak that this step reaches [N]
+  Number<Law> grip;                      // pull at which the bond breaks [N], 0: none or broken
+  Number<Law> stretched, bond_loss;      // elastic energy of the bond; what it lost for good in this step [J]
   GrowthState<Number<Law>> last, state;  // before and after the step
 };
 
@@ -343,9 +372,19 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
     const T unstored = select(dented, soft * back.work, zero);
     const T before_force = select(c.state.area > 0.0, before.point.force, peak.force);
     const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
-    c.state = {v.now, v.extrapolated, c.state.shift + shift, raw,     gamma,        own,
-               area,  unstored,       v.now_grown,           v.grown, pressure_now, pressure};
+    c.state = {v.now,       v.extrapolated, c.state.shift + shift, raw,      gamma,         own, area, unstored,
+               v.now_grown, v.grown,        pressure_now,          pressure, c.state.broken};
   }
+  if constexpr (!wall)
+    if (rarely(any(c.bond > 0.0))) {
+      const T stretch = s.step.after.delta_max - s.softness * back.overlap - s.overlap;
+      const auto whole = (c.bond > 0.0) & dented & (c.state.broken == 0.0);
+      const auto bond = detail::hold(c.bond, law.E_star / s.softness, peak.radius, stretch, whole, parts);
+      s.step.force = s.step.force - bond.pull;
+      s.step.radius = select(bond.grip > 0.0, peak.radius, s.step.radius);
+      s.grip = bond.grip, s.stretched = bond.stretched, s.bond_loss = bond.loss;
+      if (!repeats) c.state.broken = select(whole & !(bond.grip > 0.0), one, c.state.broken);
+    }
   // a new contact that is looked at before a step has no growth of its own yet that it could take from its sums
   if (const auto undented = repeats ? parts | !known : parts; any(undented)) {
     const Dents<T>& d = c.dents;
@@ -360,7 +399,8 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
     c.state = {select(parts, zero, g.last),  select(parts, zero, g.added),         select(parts, zero, g.shift),
                select(parts, zero, g.raw),   select(parts, zero, g.gamma),         select(parts, zero, g.own),
                select(parts, zero, g.area),  select(parts, zero, g.unstored),      select(parts, zero, g.last_grown),
-               select(parts, zero, g.grown), select(parts, zero, g.last_pressure), select(parts, zero, g.pressure)};
+               select(parts, zero, g.grown), select(parts, zero, g.last_pressure), select(parts, zero, g.pressure),
+               select(parts, zero, g.broken)};
   }
   s.state = c.state;
   return s;
@@ -411,7 +451,7 @@ template <class Law, class T = Number<Law>>
     lost = select(yields, work - paid + (s.state.unstored - s.last.unstored), lost);
     held = select(yields, s.softness * U, held);
   }
-  return {lost, held, T{}};
+  return {lost + s.bond_loss, held + s.stretched, T{}};
 }
 
 }  // namespace epdem

@@ -98,7 +98,7 @@ struct NormalContact {
   Step<Law> step;
   Number<Law> overlap;  // of the law, with growth [m]
   Number<Law> force;    // [N] with the dashpot
-  Number<Law> load;     // [N] friction is at most mu times it
+  Number<Law> load;     // [N] friction is at most mu times it: with a bond also the pull that it stands
   Number<Law> k_n;      // [N/m] of rolling friction, F/alpha of Hertz; none across a gap
   Number<Law> k_t;      // [N/m]
   Number<Law> damping;  // of the dashpot beside friction [N s/m]
@@ -120,6 +120,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   NormalContact<Law> now{};
   now.overlap = overlap;
   [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth
+  [[maybe_unused]] T grip{};                  // pull at which a bond breaks [N]
   if constexpr (Law::yields) {
     reached = before.delta_max;
     // a host rounds positions anew between two steps; what the last step left at its largest overlap is still there
@@ -143,6 +144,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     now.overlap = grown.overlap;
     reached = grown.before.delta_max;
     delta_max = grown.delta_max;
+    grip = grown.grip;
     observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
       union Copy {  // number by number: what is passed by its address stays in memory
         GrownStep<Law> step;
@@ -172,7 +174,10 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   }
   now.load = sliding_load(law, R_star, now.step, now.force);
   if constexpr (adheres<Law>) now.k_n = select(overlap > 0.0, now.k_n, T{});
-  if constexpr (!std::is_same_v<std::decay_t<Growth>, NoGrowth>) now.step.after.delta_max = delta_max;
+  if constexpr (!std::is_same_v<std::decay_t<Growth>, NoGrowth>) {
+    now.step.after.delta_max = delta_max;
+    now.load = now.load + grip;
+  }
   return now;
 }
 
@@ -250,6 +255,8 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   // bodies that touch without being attached begin anew in the models beside the law
   [[maybe_unused]] const auto attached = detail::attached<Law>(history.law);
   if constexpr (adheres<Law>) detail::keep_where<T>(attached, history.friction);
+  if constexpr (!std::is_same_v<Growth, NoGrowth>)
+    history.growth.bond = settings.cohesion == bond_place ? pair.cohesion_density : T{};
   NormalContact<Law> now = normal_contact(pair, c.R_star, c.radius_i, history.law, c.overlap,
                                           T(-c.normal_velocity * settings.dt), -c.normal_velocity, settings.damped,
                                           settings.viscous, m_star, settings.repeats, observer, history.growth);

@@ -2,6 +2,7 @@
 // The models beside a law: a new one is its header and one line in its list. The first of each list is no model.
 #pragma once
 
+#include "cohesion/bond.hpp"
 #include "cohesion/sjkr.hpp"
 #include "cohesion/sjkr2.hpp"
 #include "friction/partial_slip.hpp"
@@ -71,8 +72,12 @@ using Rollings = List<
 using Cohesions = List<
     NoCohesion,
     Sjkr,
-    Sjkr2>;
+    Sjkr2,
+    Bond>;
 // clang-format on
+
+/// The place of the bond in its list, the one cohesion that goes with compaction.
+inline constexpr int bond_place = Cohesions::place(Bond::id);
 
 /// Whether the model at this place of its list has a history.
 template <class... Models>

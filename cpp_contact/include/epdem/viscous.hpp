@@ -35,7 +35,7 @@ inline auto has_yielded(const Law& law, Number<Law> R_star, const State<Law>& no
 
 /// The step's force with the dashpot: 2 sqrt(5/6) zeta sqrt(k_n m*) times the approach speed [m/s], k_n = 2 E* a.
 /// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts
-/// where the law does not. reached: largest overlap before the step [m]; repeats: the last step is evaluated once more,
+/// more than the law does. reached: largest overlap before the step [m]; repeats: the last step is evaluated once more,
 /// whose overlap is the largest if it yielded.
 template <class Law>
 inline Number<Law> damped_force(const Law& law, Number<Law> R_star, Number<Law> reached, const Step<Law>& now,
@@ -43,7 +43,7 @@ inline Number<Law> damped_force(const Law& law, Number<Law> R_star, Number<Law> 
                                 bool repeats) noexcept {
   using T = Number<Law>;
   const T force = now.force + number * sqrt(2.0 * law.E_star * now.radius * m_star) * approach_speed;
-  const T damped = adheres<Law> ? force : max(T{}, force);
+  const T damped = adheres<Law> ? force : max(min(T{}, now.force), force);
   if constexpr (!Law::yields) {
     (void)R_star;
     (void)reached;

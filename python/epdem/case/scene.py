@@ -59,6 +59,7 @@ class Contact(Frozen):
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: Annotated[float, Quantity("J/m^3", above=0.0)] | None = None  # energy density (sjkr)
+    bond_strength: Annotated[float, Quantity("Pa", above=0.0)] | None = None  # of spheres that have dented each other
     heat_share: Share = 0.9  # of the plastic and frictional work, which becomes heat in a scene with temperatures
 
 

@@ -113,6 +113,8 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
     if none and (strain := law.get("finite_strain", False)) and strain < none:
         strain = FINITE_STRAIN if strain is True else strain
         texts["law", "finite_strain"] = strain * factor ** (STRAIN_POWER * STRAIN_EXPONENT)
+    if "bond_strength" in data.get("contact", {}):
+        texts["contact", "bond_strength"] = _scaled(data["contact"]["bond_strength"], factor**-STRENGTH_POWER)
     if "rate" in data:
         reference = data["rate"].get("reference", f"{Rate.model_fields['reference'].default} 1/s")
         texts["rate", "reference"] = _scaled(reference, factor**-STRAIN_POWER)

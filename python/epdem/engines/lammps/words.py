@@ -29,8 +29,8 @@ def options(m: Model, i: int, j: int) -> str:
         words += ["tangential_restitution", number(m.tangential_restitution)]
     if m.rolling:
         words += ["rolling", m.rolling.model, number(m.rolling.coefficient)]
-    if m.cohesion:
-        words += ["cohesion", "sjkr", number(m.cohesion)]
+    if m.attraction:
+        words += ["cohesion", m.attraction[0], number(m.attraction[1])]
     if m.compaction:
         words += ["compaction", "on"]
     return " ".join(words)

@@ -61,7 +61,7 @@ def contact_words(m: Model, properties: Sequence[Property] = (), recorded: Seque
         properties=(*of_model(m), *properties),
         model=f"ep/{m.law}",
         tangential=tangential(m),
-        cohesion="sjkr" if m.cohesion else None,
+        cohesion="sjkr" if m.cohesion else "ep/bond" if m.bond else None,
         rolling_friction=m.rolling.model if m.rolling else None,
         settings=(*dashpot, *recorded, *["compaction on"] * m.compaction),
     )
@@ -94,7 +94,7 @@ def history(m: Model, *, wall: bool = False) -> dict[str, int]:
     begin = memory(m, wall=wall) + 1 - len(growth)
     first = ["delta_max"] * m.yields + ["attached"] * m.adheres
     places = {name: n for n, name in enumerate(first, 1)}
-    return places | {name: begin + growth.index(name) for name in GROWTH if m.compaction}
+    return places | {name: begin + growth.index(name) for name in [*GROWTH, *["broken"] * bool(m.bond)] if m.compaction}
 
 
 def contact_columns(slots: Collection[int], values: int, points: int = 0) -> tuple[int, ...]:

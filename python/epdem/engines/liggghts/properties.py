@@ -96,6 +96,7 @@ def of_model(m: Model) -> tuple[Property, ...]:
     reason = "work of adhesion Gamma of the law: the bodies attract each other"
     add("workOfAdhesion", m.adhesion or None, reason, "J/m^2")
     add("cohesionEnergyDensity", m.cohesion or None, "contact.cohesion: attraction over the contact area", "J/m^3")
+    add("cohesionEnergyDensity", m.bond, "contact.bond_strength: largest pull over the contact area", "Pa")
     return tuple(found)
 
 

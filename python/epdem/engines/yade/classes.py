@@ -77,11 +77,11 @@ def functors(m: Model, shapes: Iterable[str], **settings: object) -> Functors:
     if m.tangential_restitution is not None:
         pairs.append(of_pairs("es", m.viscous) if m.viscous else PairValue("es", m.tangential_restitution))
     pairs += [PairValue("rollingFriction", m.rolling.coefficient)] if m.rolling else []
-    pairs += [PairValue("cohesionEnergyDensity", m.cohesion)] if m.cohesion else []
+    pairs += [PairValue("cohesionEnergyDensity", m.attraction[1])] if m.attraction else []
     pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
     models: dict[str, object] = {"tangential": repr(m.tangential)} if m.nodes else {}
     models |= {"rolling": repr(m.rolling.model)} if m.rolling else {}
-    models |= {"cohesion": repr("sjkr")} if m.cohesion else {}
+    models |= {"cohesion": repr(m.attraction[0])} if m.attraction else {}
     models |= {"compaction": "True"} if m.compaction else {}
     title = m.law.title().replace("_", "")  # thornton_ning -> ThorntonNing
     return Functors(title, tuple(shapes), tuple(pairs), models | settings)

@@ -34,8 +34,8 @@ class Model:
     parameters: dimensionless parameters of the law. wall_types: the type of each wall material; the key "" stands for
     the material of the scene's walls. friction: of each pair of types, by the model `tangential`. viscous: restitution
     of elastic impacts of each pair; tangential_restitution: of the dashpot beside the tangential spring. cohesion:
-    energy density [J/m^3]. adhesion: work of adhesion of each pair of types [J/m^2], of laws with adhesion.
-    compaction: spheres grow at each contact by the dents of their other contacts.
+    energy density [J/m^3]. bond: strength [Pa] of bonds. adhesion: work of adhesion of each pair of types [J/m^2], of
+    laws with adhesion. compaction: spheres grow at each contact by the dents of their other contacts.
     """
 
     law: str
@@ -50,6 +50,7 @@ class Model:
     cohesion: float | None
     adhesion: tuple[tuple[float, ...], ...] = ()
     compaction: bool = False
+    bond: float | None = None
 
     def type_of(self, name: str) -> int:
         """The number of a type."""
@@ -63,6 +64,11 @@ class Model:
         """Share of the weaker body in the strain of contacts of each pair of types."""
         law = LawSpec(self.law, self.parameters, (math.inf, math.inf))
         return [[law.of(a.strength, b.strength).share for b in self.types] for a in self.types]
+
+    @property
+    def attraction(self) -> tuple[str, float] | None:
+        """Name and number of the model of cohesion; None: none."""
+        return ("sjkr", self.cohesion) if self.cohesion else ("bond", self.bond) if self.bond else None
 
     @property
     def yields(self) -> bool:
@@ -127,9 +133,15 @@ def model(case: SceneCase) -> Model:
         cohesion=contact.cohesion,
         adhesion=_adhesion(case, types),
         compaction=case.law.numbers.compaction,
+        bond=contact.bond_strength,
     )
     if result.compaction and contact.cohesion is not None:
         raise CaseError("contact.cohesion: contacts with law.compaction have no cohesion; remove one of them")
+    if result.bond and not (result.compaction and contact.cohesion is None and NODES[contact.tangential] == 0):
+        raise CaseError(
+            "contact.bond_strength: bonds hold contacts with law.compaction = true, without contact.cohesion and with "
+            "contact.tangential = 'history'; change these"
+        )
     if result.adheres and contact.cohesion is not None:
         raise CaseError(f"contact.cohesion: law {result.law} has its attraction already; remove one of them")
     if result.adheres and NODES[contact.tangential]:

@@ -162,7 +162,7 @@ def _columns_of_engine(p: ScenePlan) -> list[str]:
 
 def contact_columns(p: ScenePlan) -> list[str]:
     """The columns of the table of contacts."""
-    return [*_columns_of_engine(p), *BY_LAW, *["heat_flow"] * (p.heat is not None)]
+    return [*_columns_of_engine(p), *BY_LAW, *["bonded"] * bool(p.model.bond), *["heat_flow"] * (p.heat is not None)]
 
 
 def touching(p: ScenePlan, raw: pd.DataFrame) -> pd.DataFrame:
@@ -172,6 +172,9 @@ def touching(p: ScenePlan, raw: pd.DataFrame) -> pd.DataFrame:
     """
     touch = raw["overlap"] + raw.get("added_overlap", 0.0) > 0
     attached = (raw["attached"] > 0) | (touch & (raw["step"] == 0)) if p.model.adheres else touch
+    if p.model.bond:
+        whole = raw["broken"] == 0 if "broken" in raw else raw["attached"] > 0
+        attached = touch & whole & ~raw["wall"].astype(bool)
     return raw.assign(attached=attached)[touch | attached]
 
 
@@ -213,12 +216,28 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         known[name] = raw[name] if p.model.compaction else none
     known["screening"] = known["screening"].where(known["screening"] > 0.0, 1.0)  # 0: a new contact
     table = raw[_columns_of_engine(p)].join(energies(p, known))
+    if p.model.bond:
+        table = _with_bonds(table, known)
     if p.heat:
         table["heat_flow"] = _heat_flow(p.heat, raw["wall"], first, second, table["contact_radius"])
     if p.model.cohesion:
         table["elastic_energy"] += cohesive_energy(p.model.cohesion, first["radius"], second["radius"], raw["overlap"])
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
+
+
+def _with_bonds(table: pd.DataFrame, known: pd.DataFrame) -> pd.DataFrame:
+    """The contacts with `bonded` (1: by a bond), which keeps the radius of the dent; its pull is the engine's."""
+    bonded = known["attached"] & (table["dent_radius"] > 0.0)
+    stretch = (table["residual_overlap"] - known["overlap"]).clip(lower=0.0).where(bonded, 0.0)
+    along = pd.Series((table[FORCE].to_numpy() * table[NORMAL].to_numpy()).sum(axis=1), table.index)
+    pull = (-along).clip(lower=0.0).where(stretch > 0.0, 0.0)
+    return table.assign(
+        force=table["force"] - pull,
+        contact_radius=table["contact_radius"].where(~bonded, table["dent_radius"]),
+        elastic_energy=table["elastic_energy"] + 0.5 * pull * stretch,
+        bonded=bonded.astype(float),
+    )
 
 
 def _heat_flow(heat: Heat, wall: pd.Series, one: pd.DataFrame, other: pd.DataFrame, radius: pd.Series) -> Array:

@@ -401,7 +401,8 @@ class Recorder:
         body to the first, and GROWTH."""
         for i in (i for i in O.interactions if i.isReal):
             x, force = i.phys, i.phys.normalForce + i.phys.shearForce  # on the second body, as the normal points to it
-            touch = (i.geom.penetrationDepth, x.deltaMax, x.contactRadius > 0.0)
+            attached = x.contactRadius > 0.0 if self.law.cohesion != "bond" else not x.brokenBond
+            touch = (i.geom.penetrationDepth, x.deltaMax, attached)
             yield (i.id1, i.id2, *touch, *-force, *-i.geom.normal, *(getattr(x, name) for name in GROWTH))
 
     def contact_table(self) -> None:
