@@ -82,9 +82,13 @@ def test_a_simulation_loaded_in_mid_contact_continues(law, options, tmp_path):
     assert np.abs(loaded - straight).max() <= 1e-9 * np.abs(straight).max()
 
 
-PAIR = """
+STEEL = """
 steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
 O.materials.append(steel)
+"""
+PAIR = (
+    STEEL
+    + """
 O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.01), 0.01, material=steel)])
 O.bodies[1].state.vel = (3, 1, -10)
 O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
@@ -95,6 +99,7 @@ O.dt = 1e-7
 for _ in range(150):
     O.step()
 """
+)
 
 
 @pytest.mark.yade("alone", "module")
@@ -248,9 +253,9 @@ def test_a_contact_across_a_periodic_face_is_that_of_free_bodies(tmp_path):
     assert np.abs(moved[0] - free[0]).max() <= 3e-3 * np.abs(free).max()  # the cell moves by one step more
 
 
-CLUMP = """
-steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
-O.materials.append(steel)
+CLUMP = (
+    STEEL
+    + """
 R = 0.01
 O.bodies.append(wall(0, axis=2, material=steel))
 clump, members = O.bodies.appendClumped([sphere((0, 0, R), R, material=steel), sphere((R, 0, R), R, material=steel)])
@@ -266,6 +271,7 @@ json.dump({"n": O.interactions.countReal(), "mass": O.bodies[clump].state.mass,
            "force": O.forces.f(clump)[2], "members": [O.interactions[0, m].phys.normalForce[2] for m in members]},
           open("result.json", "w"))
 """
+)
 
 
 def test_a_member_of_a_clump_has_the_mass_of_the_clump(tmp_path):
@@ -304,9 +310,9 @@ def test_the_script_of_the_page_settles(tmp_path):
     assert found[0] == 3000
 
 
-FIXED = """
-steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
-O.materials.append(steel)
+FIXED = (
+    STEEL
+    + """
 O.bodies.append([sphere((0, 0, 0), 0.01, material=steel), sphere((0, 0, 0.01999), 0.01, fixed=True, material=steel)])
 O.bodies[0].dynamic = O.bodies[1].dynamic = False
 O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=0),
@@ -318,6 +324,7 @@ for velocity in (0, 0, -1), (1, 0, -1):
     O.step()
 json.dump([O.interactions.countReal(), *O.forces.f(0)], open("result.json", "w"))
 """
+)
 
 
 def test_bodies_that_are_not_dynamic_have_no_dashpot(tmp_path):

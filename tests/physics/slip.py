@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The C++ law of partial slip for tests: arrays of contacts, oblique impacts, and the tables of docs/partial_slip.md.
-
-.venv/bin/python tests/physics/slip.py
-"""
+"""The C++ law of partial slip for tests: arrays of contacts, oblique impacts and cycles of shear."""
 
 import ctypes
 import subprocess
@@ -186,30 +183,3 @@ def sheared_back_under_load(share, *, nodes, cycles):
     d, top, shear = 1e-6, 1.6e-6, share * unit_slip(1e-6)
     legs = [(d, d, shear), (d, top, 0.0), (top, top, -shear), (top, d, 0.0)]
     return cycle_losses(shear, legs, nodes=nodes, cycles=cycles)
-
-
-def main():
-    """The tables of docs/partial_slip.md."""
-    print("| e_t at psi_1 | " + " | ".join(f"`{n}` {v:.3g} m/s" for n, v in IMPACTS[:2]) + " |")
-    for psi_1 in (0.01, 0.05, 0.1, 0.125):
-        cells = []
-        for name, speed in IMPACTS[:2]:
-            psi_2 = [rebound(LAWS[name], [psi_1], speed, steps=300, nodes=k)[0].mean() for k in (2, 3)]
-            psi_2.append(float(reference(LAWS[name], [psi_1], speed)[0]))
-            cells.append(", ".join(f"{1 - (1 - x / psi_1) / 3.5:.3f}" for x in psi_2))
-        print(f"| {psi_1:g} | {' | '.join(cells)} |")
-    for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.7):
-        print(f"| {share} | " + " | ".join(f"{shaken(share, nodes=k):.3f}" for k in (2, 3, 0)) + " |")
-    for share in (0.05, 0.1, 0.3, 0.6):
-        losses = [sheared_back_under_load(share, nodes=k, cycles=20)[[0, 1, 4, 19]] for k in (2, 3, 0)]
-        print(f"| {share} | " + " | ".join(", ".join(f"{x:.2f}" for x in row) for row in losses) + " |")
-    print("| friction | steps in contact | " + " | ".join(f"`{n}` {v:.3g} m/s" for n, v in IMPACTS) + " |")
-    print("|" + "---|" * (2 + len(IMPACTS)))
-    for label, nodes in (("one spring, `history`", 0), ("2 nodes", 2), ("3 nodes", 3)):
-        for steps in (30, 100, 300):
-            row = [f"{error(name, speed, nodes=nodes, steps=steps):.3f}" for name, speed in IMPACTS]
-            print(f"| {label} | {steps} | {' | '.join(row)} |")
-
-
-if __name__ == "__main__":
-    main()

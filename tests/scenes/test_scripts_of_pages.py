@@ -35,7 +35,7 @@ ELSEWHERE = {  # the test that runs what a script computes
     "lattices": "engines/test_lammps_lattices.py",
     "liggghts_invariance": "engines/test_plugin_invariance.py",
     "plastic_contacts": "verification/test_contacts.py",
-    "slip": "physics/test_slip_law.py",
+    "slip_tables": "physics/test_slip_law.py",
     "stability": "verification/test_stability.py",
     "validation": "verification/test_claims.py",
     "yield_pressure": "physics/test_yield_pressure.py",
