@@ -10,10 +10,10 @@ import numpy as np
 from hosts import CLASSES, LAMMPS, LIGGGHTS
 from lammps_decks import run as run_lammps
 from plugin_decks import good
-from triangles import plate
 from yade_native import title, yade
 
 from epdem.base.declarations import declarations
+from epdem.scenes.plan.meshes import stl_text
 
 HOSTS = [LIGGGHTS, LAMMPS, CLASSES]
 PLACE, VELOCITY, SPIN, FORCE, TORQUE = (slice(k, k + 3) for k in range(0, 15, 3))
@@ -50,7 +50,7 @@ class Scene:
     lines: str = ""  # runs of LIGGGHTS and LAMMPS in place of moves
     restart: bool = False  # LIGGGHTS and LAMMPS: a restart file between the first two runs; its step comes twice
     ranks: int = 1  # or threads of YADE
-    floor: str = "plane"  # or mesh in LIGGGHTS, region or block in LAMMPS, facet or box in YADE
+    floor: Any = "plane"  # or triangles in LIGGGHTS and LAMMPS, region or block in LAMMPS, facet or box in YADE
     boundary: str = "f f f"  # of LIGGGHTS and LAMMPS
     half: float | None = None  # half the side of the room [m]; None: all spheres stay in it
     skin: float | None = None  # of neighbour lists [m]; None: 0.3 of the smallest radius
@@ -97,6 +97,10 @@ class Scene:
             others = ["write_restart middle\nclear\n", again, rest.format(1, "run 0\n"), *others]
         return begin + rest.format(0, "") + first + "".join(others)
 
+    def stl(self):
+        """The file of triangles."""
+        return {} if isinstance(self.floor, str) else {"plate.stl": stl_text("plate", np.array(self.floor))}
+
     def names(self):
         """Properties of the law that the materials have, in the order of its declaration."""
         return [p.property for p in declarations()[self.law].parameters if p.property in self.materials[0]]
@@ -140,7 +144,7 @@ def liggghts(folder, s):
     text = f"neighbor {s.lists()!r} bin\nneigh_modify delay 0\n"
     text += "".join(f"fix {name} all property/global {name} {value}\n" for name, value in values.items())
     text += f"pair_style gran {words} {settings}\npair_coeff * *\n"
-    if s.floor == "mesh":
+    if not isinstance(s.floor, str):
         text += f"fix plate all mesh/surface file plate.stl type {s.plane + 1}\n"
         plane = "mesh n_meshes 1 meshes plate"
     if s.plane is not None:
@@ -148,13 +152,15 @@ def liggghts(folder, s):
     text += f"fix fall all gravity {s.gravity!r} vector 0 0 -1\n" * (s.gravity > 0)
     text += f"fix move all nve/sphere\ntimestep {s.dt!r}\nthermo_modify lost error norm no\n"
     text += f"dump d all custom {s.every} out{{0}}.bin id {COLUMNS} f_plasticWork f_elasticEnergy{rubs}\n"
-    side = 0.9 * s.reach()
-    files = {"spheres.data": s.data(n), "plate.stl": plate((-side, 0.95 * side), (-side, 0.93 * side))}
+    files = {"spheres.data": s.data(n)} | s.stl()
     more = {"files": files, "env": {"EPDEM_LOOP": s.loop} if s.loop else None, "ranks": s.ranks}
     atoms = [begin + f"read_{name}\n" for name in ("data spheres.data", "restart middle")]
     done = good(folder, s.deck(*atoms, text), **more)
     found = np.concatenate([done.frames(f"out{k}.bin")[1] for k in range(1 + s.restart)])[:, :, 1:]
     return found if rubs else np.concatenate([found, np.zeros((*found.shape[:2], 2))], axis=2)
+
+
+SHAPES = {"region": "plane 0 0 0 0 0 1", "block": "block INF INF INF INF -1 0 side out"}
 
 
 def lammps(folder, s):
@@ -168,15 +174,16 @@ def lammps(folder, s):
     end += f" restitution {s.restitution!r}" * (s.restitution is not None) + " compaction on" * s.compaction
     words = [" ".join([s.law, *(repr(m[key]) for key in ("E", "nu", *s.names()))]) + end for m in s.materials]
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "spheres.data").write_text(s.data(len(words), " # sphere"))
+    for name, text in ({"spheres.data": s.data(len(words), " # sphere")} | s.stl()).items():
+        (folder / name).write_text(text)
     begin = f"units si\natom_style sphere\natom_modify map array sort 0 0\nboundary {s.boundary}\ncomm_modify vel yes\n"
     begin += f"processors {s.ranks} 1 1\n" * (s.ranks > 1) + "read_data spheres.data\npair_style ep energies\n"
     begin += "".join(f"pair_coeff {k} {k} {w}\n" for k, w in enumerate(words, 1))
     again = "atom_modify map array sort 0 0\ncomm_modify vel yes\nread_restart middle\n"
     text = f"neighbor {s.lists()!r} bin\nneigh_modify delay 0\n"
-    shape = {"region": "plane 0 0 0 0 0 1", "block": "block INF INF INF INF -1 0 side out"}.get(s.floor)
+    shape = SHAPES.get(s.floor) if isinstance(s.floor, str) else ""
     text += f"region floor {shape}\n" if shape else ""
-    wall = "wall/ep/region floor" if shape else "wall/ep zplane 0 NULL"
+    wall = "wall/ep/region floor" if shape else "wall/ep zplane 0 NULL" if shape is None else "wall/ep mesh plate.stl"
     text += f"fix floor all {wall} {words[s.plane]}\n" if s.plane is not None else ""
     text += f"fix fall all gravity {s.gravity!r} vector 0 0 -1\n" * (s.gravity > 0)
     text += f"fix move all nve/sphere\ntimestep {s.dt!r}\n"

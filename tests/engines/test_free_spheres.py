@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Friction, rolling, cohesion, adhesion and energies of single contacts, each in every host."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from free_spheres import ELASTIC, FORCE, HOSTS, PLACE, PLASTIC, SPIN, VELOCITY, Scene, frames
 from hosts import ADHESIVE, LAMMPS, LAWS, LIGGGHTS, on
+from triangles import fold, tiles
 
 import oblique
 from epdem.theory import adhesion, backbones, pair, partial_slip, restitution
@@ -207,6 +210,40 @@ def test_shear_loading_and_back_loses_energy_where_one_spring_makes_it(host, tan
     assert np.abs(f[:, 0]).max() < 0.5 * mu * f[n, 1]  # nothing slides as a whole
 
 
+OVER_TRIANGLES = pytest.mark.parametrize(
+    ("host", "loop"),
+    [pytest.param(*h.values, loop, marks=h.marks) for h, loop in ((LIGGGHTS, ""), (LIGGGHTS, "generic"), (LAMMPS, ""))],
+)
+
+
+def over_fold(host, folder, degrees, x, v):
+    """Rows after impacts of rough spheres on a plane and on a fold, which falls beyond x = 0 for degrees > 0."""
+    places = [(place, 0.03 * k, 5e-3) for k, place in enumerate(x)]
+    more = {"radius": 5e-3, "plane": 0, "tangential": "history", "friction": 0.3, "every": 10000, "half": 0.5}
+    plane = Scene("thornton", [STEEL], places, np.tile(v, (len(x), 1)), 2e-8, 10000, **more)
+    fell = replace(plane, floor=fold(-np.radians(degrees), (-0.1, 0.1), (-0.4, 0.4)))
+    return (frames(host, folder / name, s)[-1] for name, s in (("plane", plane), ("fold", fell)))
+
+
+@OVER_TRIANGLES
+@pytest.mark.parametrize(("degrees", "share"), [(10, 0.001), (60, 0.001), (-10, 0.2)])
+def test_beside_a_fold_a_sphere_touches_the_face_alone(degrees, share, host, loop, tmp_path, monkeypatch):
+    """At the edge of a convex one, and beyond the reach of the slope of a concave one."""
+    monkeypatch.setenv("EPDEM_LOOP", loop)
+    plane, mesh = over_fold(host, tmp_path, degrees, [-5e-3 * s for s in (share, 0.25, 0.5)], [0.0, 0.0, -5.0])
+    assert (plane[:, 5] > 1).all()
+    assert np.abs(mesh[:, VELOCITY] - plane[:, VELOCITY]).max() <= 1e-6 * plane[0, 5]
+
+
+@OVER_TRIANGLES
+def test_friction_goes_along_over_a_fold(host, loop, tmp_path, monkeypatch):
+    """A fold of 0.4 degrees, which LIGGGHTS takes for an edge, has the spins of a plane."""
+    monkeypatch.setenv("EPDEM_LOOP", loop)
+    plane, mesh = over_fold(host, tmp_path, 0.4, [-2e-6, -3e-6, -5e-6], [0.5, 0.0, -5.0])
+    assert (mesh[:, 0] > 0).all()
+    assert np.abs(mesh[:, 7] - plane[:, 7]).max() < 0.005 * 0.5 / 5e-3  # of the spin of a sphere that rolls
+
+
 @every_host
 def test_a_sphere_that_slides_before_the_first_step_has_coulombs_friction(host, tmp_path):
     """It slides to the end, so that its loss of speed is mu times the speed with which it leaves the wall."""
@@ -260,7 +297,7 @@ def test_forces_of_law_and_cohesion_of_both_contacts_of_a_sphere_add_up(host, la
         kinds=[0, 1],
         plane=0,
         cohesion=(cohesion, density if cohesion != "off" else 0.0),
-        floor=mesh or "plane",
+        floor=tiles((-0.08, 0.08), (-0.07, 0.07)) if mesh else "plane",
     )
     found = frames(host, tmp_path, scene)[..., FORCE]  # of the start, which LIGGGHTS's loop computes, and of a step
     E = [pair.E_star(1e9, 0.3, *other) for other in ((1e9, 0.3), (5e8, 0.2))]

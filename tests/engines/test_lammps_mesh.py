@@ -135,24 +135,6 @@ def test_no_force_acts_past_a_ledge(tmp_path):
 SIDES = (-0.06, 0.04)  # of a fold
 
 
-def test_beside_an_edge_a_sphere_touches_the_face_alone(tmp_path):
-    """Convex folds of 10 and 60 degrees, and a concave one beyond the place where its slope is in reach."""
-    places = [(-s * R, y) for y in (-0.06, 0.0) for s in (0.01, 0.1)] + [(-0.3 * R, 0.06)]
-    places = [(x, y + 0.02 * (k % 2)) for k, (x, y) in enumerate(places)]
-    faces = [
-        *fold(np.radians(-10), SIDES, (-0.08, -0.02)),
-        *fold(np.radians(-60), SIDES, (-0.02, 0.04)),
-        *fold(np.radians(10), SIDES, (0.04, 0.09)),
-    ]
-    (tmp_path / "folds.stl").write_text(stl_text("folds", np.array(faces)))
-    head = spheres(*((x, y, 1.00001 * R) for x, y in places), pair=HARD)
-    walk = f"velocity all set 0 0 -1\nfix motion all nve/sphere\ntimestep 1e-6\nrun 2000\n{DUMP}"
-    _, plane = run(f"{head}fix w all wall/ep zplane 0 NULL {HARD}\n{walk}", tmp_path / "plane")
-    _, mesh = run(f"{head}fix w all wall/ep mesh folds.stl {HARD}\n{walk}", tmp_path)
-    assert (plane[:, 6] > 0.1).all()
-    assert np.abs(mesh[:, 4:7] - plane[:, 4:7]).max() <= 1e-6 * plane[0, 6]
-
-
 @pytest.mark.parametrize(("degrees", "speed"), [(7.5, 0.05), (7.5, 1.0), (15, 1.0), (30, 1.0)])
 def test_a_concave_fold_conserves_energy(degrees, speed, tmp_path):
     """Elastic spheres that hit beside a fold, obliquely: one contact up to 20 degrees, two above."""

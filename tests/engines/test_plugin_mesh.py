@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 import pytest
-from plugin_decks import Bodies, contact, deck_of, good, head, materials, per_pair, run
-from triangles import cube, fold
+from plugin_decks import Bodies, contact, good, head, materials, per_pair, run
+from triangles import cube
 
 from epdem.scenes.plan.meshes import stl_text
 from marks import thorough
@@ -150,40 +150,3 @@ def test_a_wall_that_would_lose_its_dents_after_a_restart_is_refused(what, tmp_p
         again = again.replace(old, new)
     done = run(tmp_path, first + "clear\n" + again, files={"box.data": bodies().data(ROOM), "plate.stl": BOX})
     assert (done.code != 0) == bool(wrong) and wrong in done.error, done.error or done.text[-1000:]
-
-
-RADIUS = 5e-3  # [m]
-
-
-def on_wall(folder, starts, wall, loop=""):
-    """Velocities and spins of spheres after an impact on a plane, or on triangles."""
-    n = len(starts)
-    x, v = np.array([s[0] for s in starts]), np.array([s[1] for s in starts])
-    data = Bodies(np.arange(n) % 3 + 1, np.full(n, RADIUS), x, v, np.zeros((n, 3))).data(((-0.5, 0.5),) * 3)
-    body = f"dump d all custom 10000 out.bin {COLUMNS}\nrun 10000\n"
-    text = deck_of("ep/thornton", body, dt=2e-8, wall="primitive" if wall is None else "mesh")
-    files = {"box.data": data} | ({} if wall is None else {"plate.stl": stl_text("plate", np.array(wall))})
-    return good(folder, text, files=files, env={"EPDEM_LOOP": loop} if loop else None).last
-
-
-def slope(degrees):
-    """A level floor, and a slope that falls beyond x = 0."""
-    return fold(-np.radians(degrees), (-0.1, 0.1), (-0.4, 0.4))
-
-
-@pytest.mark.parametrize("loop", ["", "generic"])
-@pytest.mark.parametrize("degrees", [10, 60])
-def test_beside_a_convex_edge_a_sphere_touches_the_face_alone(degrees, loop, tmp_path):
-    starts = [((-s * RADIUS, 0.03 * k, RADIUS), (0.0, 0.0, -5.0)) for k, s in enumerate((0.001, 0.01, 0.1, 0.25, 0.5))]
-    plane = on_wall(tmp_path / "plane", starts, None)
-    mesh = on_wall(tmp_path / "mesh", starts, slope(degrees), loop=loop)
-    assert (plane[:, 6] > 1).all()
-    assert np.abs(mesh[:, 4:7] - plane[:, 4:7]).max() <= 1e-6 * plane[0, 6]
-
-
-def test_friction_goes_along_over_a_fold(tmp_path):
-    """A fold of 0.4 degrees, which LIGGGHTS takes for an edge, has the spins of a plane."""
-    starts = [((-s * 1e-6, 0.03 * k, RADIUS), (0.5, 0.0, -5.0)) for k, s in enumerate((2.0, 3.0, 5.0))]
-    plane, mesh = (on_wall(tmp_path / str(degrees), starts, degrees and slope(degrees)) for degrees in (None, 0.4))
-    assert (mesh[:, 1] > 0).all()
-    assert np.abs(mesh[:, 11] - plane[:, 11]).max() < 0.01 * np.abs(plane[:, 11]).max()
