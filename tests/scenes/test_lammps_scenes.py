@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pandas as pd
 import pytest
 from parts_cases import BED, CASES, FLOOR, linear, mm, mps, own, parts, timed, vibrating, write_stl
 from scene_runs import LAMMPS, LIGGGHTS, assert_alike, in_hosts, ran, run, write_case
@@ -21,6 +22,8 @@ from epdem.scenes.plan.plan import plan
 from epdem.scenes.plan.quantities import SPINS
 from epdem.scenes.tables.columns import last_frame
 from marks import thorough
+
+ROOT = CASES.parent
 
 
 def plane(name, axis, at):
@@ -240,22 +243,30 @@ def test_a_sphere_crosses_edges_with_friction_as_in_liggghts(kind, tmp_path):
 
 @needs_lammps
 @pytest.mark.liggghts
-@pytest.mark.parametrize("name", [thorough("hopper_stl"), thorough("screw")])
-def test_cases_with_an_stl_wall_run_in_both_hosts(name, tmp_path):
-    """Mean discharge of the hopper, and mean torque and force of the screw, from the same lines."""
-    means = []
-    for engine in ("lammps", "liggghts"):
-        found = run(CASES / f"{name}.toml", engine=engine, out=tmp_path / engine)
-        assert found.passed, found.results.checks
-        rows, measures = found.results.rows, found.results.measures
-        if name == "screw":
-            late = rows["time"] > 0.3
-            means.append([rows[f"screw_{what}_z"][late].mean() for what in ("torque", "force")])
-        else:
-            late = (measures["time"] > 0.25) & (measures["time"] < 0.6)
-            means.append([np.polyfit(measures["time"][late], measures["poured"][late], 1)[0]])
-    assert np.abs(means[1]).min() > 0
-    assert means[0] == pytest.approx(means[1], rel=0.03 if name == "hopper_stl" else 0.15)
+@pytest.mark.parametrize("name", [thorough("screw"), thorough("hopper"), thorough("drum")])
+def test_scenes_with_an_stl_wall_agree_in_both_hosts_and_with_their_table(name, monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(str(ROOT / "bench"))
+    import stl_scenes
+
+    stored = pd.read_csv(stl_scenes.TABLE)
+    for host in stl_scenes.HOSTS:
+        found = stl_scenes.measure(name, 9, host, tmp_path)
+        rows = stored[stored["scene"] == name].set_index("quantity")
+        assert {*rows.index} == {*found}
+        for quantity, value in found.items():
+            off = value - rows.loc[quantity, host]
+            assert abs(off) <= max(4 * rows.loc[quantity, f"{host}_scatter"], 0.02 * abs(value)), (host, quantity)
+
+
+def test_the_page_has_the_table_of_scenes_with_an_stl_wall():
+    """The means of both hosts differ by at most 2.5 of their standard errors."""
+    stored = pd.read_csv(ROOT / "docs/data/stl_scenes.csv", dtype=str)
+    assert {*stored["scene"]} == {"screw", "hopper", "drum"} and (stored["packings"].astype(int) >= 4).all()
+    assert (stored["sigmas"].astype(float).abs() <= 2.5).all()
+    page = (ROOT / "docs/lammps.md").read_text()
+    for _, x in stored.iterrows():
+        cells = [f"{x[host]} +- {x[f'{host}_scatter']}" for host in ("liggghts", "lammps")]
+        assert f"| {x['scene']} | {x['quantity']} [{x['unit']}] | {cells[0]} | {cells[1]} | {x['ratio']} |" in page
 
 
 def test_the_meshes_of_the_cases_are_those_of_their_script(tmp_path):

@@ -37,6 +37,7 @@ ELSEWHERE = {  # the test that runs what a script computes
     "plastic_contacts": "verification/test_contacts.py",
     "slip_tables": "physics/test_slip_law.py",
     "stability": "verification/test_stability.py",
+    "stl_scenes": "scenes/test_lammps_scenes.py",
     "validation": "verification/test_claims.py",
     "yield_pressure": "physics/test_yield_pressure.py",
 }
