@@ -2,12 +2,17 @@
 """No command that writes replaces a file of the user's without --force; with it, it does."""
 
 import errno
+import os
 import re
 import shutil
+import sys
+import time
 from pathlib import Path
 
 import pytest
 from calls import CASES, call, quick_figures
+from parts_cases import parts
+from scene_runs import write_case
 
 from epdem.base.files import atomic
 from epdem.verification import stability
@@ -90,3 +95,72 @@ def test_a_full_disk_is_said_with_its_free_bytes_though_the_folder_has_gone(tmp_
     done = call(("run", CASES / "steel_wall.toml", "-e", "embedded", "-o", "out"), capsys, monkeypatch)
     assert done.code == 2 and done.err.startswith("epdem: out/law/in.impact: No space left on device (")
     assert "bytes are free); choose another folder by --out" in done.err
+
+
+sys.path.append(str(Path(__file__).parents[1] / "scenes"))
+
+SET = ("--set", "impact.body.radius=1 mm,2 mm")
+READERS = {
+    "run": (),
+    "predict": (),
+    "deck": ("-o", "d"),
+    "view": (),
+    "soften": ("--factor", "100"),
+    "verify cost": (),
+    "verify crosscheck": (),
+    "sweep": SET,
+    "calibrate": ("--target", "height_last=1 mm", "--free", "contact.friction=0.1..0.5"),
+}
+NESTED = "nested more than 20 deep"
+FILES = {
+    "lists": ("a = " + "[" * 3000 + "]" * 3000, NESTED),
+    "few_lists": ("a = " + "[" * 150 + "]" * 150, NESTED),
+    "tables": ("a = " + "{b=" * 2000 + "1" + "}" * 2000, NESTED),
+    "dots": ("a" + ".a" * 20_000 + " = 1", NESTED),
+    "quoted_dots": ('"a b" ' + ". 'a' " * 20_000 + " = 1", NESTED),
+    "head": ("[a" + ".a" * 20_000 + "]\nx = 1", NESTED),
+    "inline_dots": ("x = { y = 1, a" + ".a" * 20_000 + " = 1 }", NESTED),
+    "digits": ("[case]\nname = 'a'\nx = " + "9" * 4400, "a whole number has more than 4300 digits"),
+    "large": ("#" * 1_000_001, "1000001 bytes, must be at most 1000000"),
+}
+
+
+def said(words, capsys, monkeypatch) -> str:
+    begin = time.monotonic()
+    done = call(words, capsys, monkeypatch)
+    assert done.code == 2 and done.err.count("\n") == 1 and len(done.err) < 1000, (done.code, done.err[-500:])
+    assert time.monotonic() - begin < 10
+    return done.err
+
+
+@pytest.mark.parametrize("command", READERS)
+def test_a_command_refuses_what_no_case_is(command, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe.toml")
+    for name, (text, says) in FILES.items():
+        Path(f"{name}.toml").write_text(text)
+        assert says in said((command, f"{name}.toml", *READERS[command]), capsys, monkeypatch)
+    for special in ("/dev/zero", "pipe.toml", "."):
+        assert f"{special}: not a regular file" in said((command, special, *READERS[command]), capsys, monkeypatch)
+
+
+def test_large_fields_of_tables_are_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    field = "1" * 140_000
+    Path("spheres.csv").write_text(f"x,y,z,radius\n0,0,{field},0.001\n")
+    Path("sieve.csv").write_text(f"opening [mm],retained [%]\n{field},0\n1,100\n")
+    Path("points.csv").write_text(f"impact.body.radius\n{field}\n")
+    table = {"name": "bed", "file": "spheres.csv", "material": "glass"}
+    write_case(parts(fill=[table]), tmp_path, "table.toml")
+    region = {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "38 mm"]}
+    sieved = {"name": "bed", "region": region, "count": 9}
+    sieved["particles"] = [{"material": "glass", "radius": {"sieve": "sieve.csv"}}]
+    write_case(parts(fill=[sieved]), tmp_path, "sieved.toml")
+    assert "spheres.csv cannot be read (field larger" in said(("run", "table.toml"), capsys, monkeypatch)
+    assert "sieve.csv cannot be read (field larger" in said(("run", "sieved.toml"), capsys, monkeypatch)
+    steel = str(CASES / "steel_wall.toml")
+    words = ("sweep", steel, "--points")
+    assert "points.csv cannot be read (field larger" in said((*words, "points.csv"), capsys, monkeypatch)
+    assert "/dev/zero: not a regular file" in said((*words, "/dev/zero"), capsys, monkeypatch)
+    deep = "impact.body.radius=" + "[" * 5000
+    assert "impact.body.radius" in said(("sweep", steel, "--set", deep), capsys, monkeypatch)

@@ -125,10 +125,3 @@ def test_lammps_runs_impacts_on_walls_only():
     check_plan(ALL["lammps-mdr"](), *planned())
     with pytest.raises(CaseError, match="mdr is compared on walls"):
         check_plan(ALL["lammps-mdr"](), *planned(SPHERES))
-
-
-def test_positions_limit_only_engines_that_have_them():
-    p, prediction = planned({"speeds": ["1e-13 m/s"]})
-    check_plan(ALL["embedded"](), p, prediction)
-    with pytest.raises(CaseError, match="not representable by positions"):
-        check_plan(ALL["liggghts"](), p, prediction)

@@ -36,6 +36,12 @@ def flat(name: str, center: list, size: list, axis: str = "z", **keys: object) -
     return {"name": name, "material": "steel"} | shape | keys
 
 
+def pipe(name: str, low: str, high: str, diameter: str, **keys: object) -> dict:
+    """A cylinder of steel."""
+    ends = {"kind": "cylinder", "from": low, "to": high, "diameter": diameter}
+    return {"name": name, "material": "steel"} | ends | keys
+
+
 def linear(wall: str, *velocity: object) -> dict:
     """A motion at constant velocity [m/s]."""
     return {"wall": wall, "kind": "linear", "velocity": mps(*velocity)}

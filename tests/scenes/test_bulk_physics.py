@@ -2,33 +2,25 @@
 """Bulk scenes against what is known of them without any contact law: weights, falls and e_n by its closed form."""
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scene_runs import run
+from parts_cases import mm, own
+from scene_runs import ran
 
 pytestmark = pytest.mark.liggghts
 CASES = Path(__file__).parents[2] / "cases"
 G, RADIUS, DENSITY = 9.81, 1.5e-3, 2500.0
 
 
-def settle(
-    folder: Path, *, law="thornton", Y=0.5e6, output="particles = 100", error=0.1, restitution=1.0, **scene: str
-) -> Path:
+def settle(*, law="thornton", Y=0.5e6, error=0.1, frames=100, **scene: object) -> dict:
     """The settling beads, all of one size and without friction."""
-    text = (CASES / "settle_glass.toml").read_text().split("[contact]")[0]
-    scene = {"particles": '[{ material = "glass", radius = "1.5 mm" }]'} | scene
-    for key, value in {"name": None, "yield_stress": f'"{Y} Pa"', **scene}.items():
-        if value is not None:
-            text, n = re.subn(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
-            text += "" if n else f"{key} = {value}\n"
-    text = text.replace('name = "thornton"', f'name = "{law}"')
-    (folder / "case.toml").write_text(
-        f"{text}\n[viscous]\nrestitution = {restitution}\n[output]\n{output}\n[numerics]\nerror = {error}\n"
-    )
-    return folder / "case.toml"
+    data = own("settle_glass")
+    del data["contact"]
+    data["materials"]["glass"] |= {"yield_stress": f"{Y} Pa"}
+    data["scene"] |= {"particles": [{"material": "glass", "radius": "1.5 mm"}]} | scene
+    return data | {"law": {"name": law}, "output": {"particles": frames}, "numerics": {"error": error}}
 
 
 def restitution_thornton(v: float, Y: float, E: float = 50e6) -> float:
@@ -40,23 +32,14 @@ def restitution_thornton(v: float, Y: float, E: float = 50e6) -> float:
     return math.sqrt(6 * math.sqrt(3) / 5 * (1 - x**2 / 6)) * (x / (x + 2 * math.sqrt(1.2 - 0.2 * x**2))) ** 0.25
 
 
-BED = {"box": '["12 mm", "12 mm", "50 mm"]', "count": "100", "duration": '"0.35 s"'}
+BED = {"box": mm(12, 12, 50), "count": 100, "duration": "0.35 s"}
 
 
 def test_lone_spheres_of_a_scene_bounce_to_e_n_squared_of_their_fall(tmp_path):
     E, Y = 5e9, 8e6
-    path = settle(
-        tmp_path,
-        Y=Y,
-        error=1e-3,
-        output="particles = 200",
-        young_modulus='"5 GPa"',
-        periodic="true",
-        count="16",
-        box='["60 mm", "60 mm", "30 mm"]',
-        duration='"0.14 s"',
-    )
-    table = run(path, out=tmp_path / "out").results.particles
+    data = settle(Y=Y, error=1e-3, frames=200, periodic=True, count=16, box=mm(60, 60, 30), duration="0.14 s")
+    data["materials"]["glass"]["young_modulus"] = f"{E} Pa"
+    table = ran(data, tmp_path).results.particles
     table = table[(table["z"] > RADIUS) & (np.hypot(table["vx"], table["vy"]) == 0)]
     seen = 0
     for _, sphere in table.groupby("id"):
@@ -74,7 +57,7 @@ def test_lone_spheres_of_a_scene_bounce_to_e_n_squared_of_their_fall(tmp_path):
 @pytest.mark.parametrize(("law", "Y"), [("thornton", 0.02e6), ("thornton", 0.3e6), ("hertz", 0.3e6)])
 def test_a_plastic_bed_rebounds_less_than_e_n_allows_and_an_elastic_one_more(law, Y, tmp_path):
     """Centre of mass: its largest rise against e_n^2 times its fall, e_n by eq. 8.83 at the speed of that fall."""
-    outcome = run(settle(tmp_path, law=law, Y=Y, **BED | {"count": "30"}), out=tmp_path / "out")
+    outcome = ran(settle(law=law, Y=Y, **BED | {"count": 30}), tmp_path)
     table = outcome.results.particles
     place = table.groupby("step")["z"].mean().to_numpy()
     first = table[table["step"] == table["step"].min()]

@@ -162,33 +162,6 @@ def test_the_radius_is_that_of_a_punch_with_the_stiffness_of_the_law_in_theory(b
     assert len(loaded) > 10
 
 
-def test_paraview_reads_a_line_for_each_contact(bed):
-    vtk = pytest.importorskip("vtk")
-    support = pytest.importorskip("vtk.util.numpy_support")
-    path, r = bed
-    reader = vtk.vtkHDFReader()
-    reader.SetFileName(str(path.parent / "out/results.h5"))
-    reader.UpdateInformation()
-    reader.SetStep(reader.GetNumberOfSteps() - 1)
-    reader.Update()
-    data = reader.GetOutputDataObject(0)
-    names = [
-        data.GetMetaData(n).Get(vtk.vtkCompositeDataSet.NAME()) for n in range(data.GetNumberOfPartitionedDataSets())
-    ]
-    lines = data.GetPartition(names.index("contacts"), 0)
-    spheres, contacts, force, normal = last(bed)
-    assert lines.GetNumberOfLines() == len(contacts)
-    points = support.vtk_to_numpy(lines.GetPoints().GetData()).reshape(-1, 2, 3)
-    assert points[:, 0] == pytest.approx(spheres.loc[contacts["i"], ["x", "y", "z"]].to_numpy(), abs=1e-8)
-    pairs = contacts["j"].to_numpy() > 0
-    others = spheres.loc[contacts["j"][pairs], ["x", "y", "z"]].to_numpy()
-    assert points[pairs, 1] == pytest.approx(others, abs=1e-8)
-    cells = lines.GetCellData()
-    assert np.array_equal(support.vtk_to_numpy(cells.GetArray("contact_force")), force)
-    radius = support.vtk_to_numpy(cells.GetArray("contact_radius")).ravel()
-    assert np.array_equal(radius, contacts["contact_radius"])
-
-
 CASES = Path(__file__).parents[2] / "cases"
 N = 100_000
 

@@ -390,7 +390,7 @@ def in_tube(axis, *, body, **more):
 
 
 def flying(axis):
-    """Six spheres that meet the round_wall and each other."""
+    """Six spheres that meet the tube and each other."""
     rng = np.random.default_rng(5)
     k, body = "xyz".index(axis), []
     for n in range(6):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from parts_cases import BED, CASE, FLOOR, flat, linear, mm, parts, timed
+from parts_cases import BED, CASE, FLOOR, flat, linear, mm, parts, pipe, timed
 from stored_runs import CASES
 
 from epdem.case.scene import parse
@@ -42,14 +42,7 @@ def pressed(height: float, kind: str):
     down = linear("lid", 0, 0, -0.1)
     size = {"room": mm(20, 20), "tube": mm(16.4, 16.4), "plates": mm(17, 17), "small": mm(18, 18)}[kind]
     lid = flat("lid", mm(0, 0, 39), size)
-    tube = {
-        "name": "tube",
-        "kind": "cylinder",
-        "diameter": "16 mm",
-        "from": "-1 mm",
-        "to": "39 mm",
-        "material": "steel",
-    }
+    tube = pipe("tube", "-1 mm", "39 mm", "16 mm")
     region = {"diameter": "16 mm", "z": mm(0, 38)}
     phase = timed("press", "1 s", move=[down], until={"wall": "lid", "travel": f"{39 - height} mm"})
     floor = lid | {"name": "floor", "center": mm(0, 0, 0)} if kind == "plates" else FLOOR
@@ -117,9 +110,9 @@ def hopper(**keys):
 )
 def test_the_highest_speed_is_that_of_the_highest_fall(case):
     """v = sqrt(2 g h) with h between the planned top of the filling and the planned floor."""
-    scene_of = case.parts
-    top = scene_of.random_fills[0].region.limits[5]
-    floor = next(plane.at for plane in scene_of.planes if plane.name == "floor")
+    scene = case.parts
+    top = scene.random_fills[0].region.limits[5]
+    floor = next(plane.at for plane in scene.planes if plane.name == "floor")
     assert highest_speed(case) == pytest.approx(math.sqrt(2 * 9.81 * (top - floor)), rel=1e-9)
 
 

@@ -90,7 +90,7 @@ def tries(few, **more):
 PLAIN = {slot: next(iter(options)) for slot, options in SLOTS.items()}
 KINDS = "cases of kinds are drawn by tests/fuzz/test_inputs.py, their runs are those of parts"
 ALONE = "judges a bed that it is made for: test_scene_checks.py"
-CURRENT = "read from frames: test_currents.py"
+CURRENT = "read from frames: test_heat_scene.py"
 WALLS = ("Plane", "Plate", "Box", "Cylinder", "Cone", "Revolved", "Stl")
 NOT_DRAWN = {
     "Keys": KINDS,

@@ -18,7 +18,6 @@ from scipy import stats
 from epdem import Scene
 from epdem.case import toml
 from epdem.case.scene import load, parse
-from epdem.engines.liggghts import deck as scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.judge.warnings import planned_warnings
 from epdem.scenes.plan.plan import plan
@@ -195,28 +194,6 @@ def test_values_of_a_pair_of_materials_count_for_spheres_and_walls():
     assert m.friction == ((0.3, 0.1), (0.1, 0.3)) and m.viscous == ((0.8, 0.4), (0.4, 0.8))
 
 
-def test_a_preset_is_made_of_the_same_parts():
-    """A settle without loads, written in parts: the lines of its deck but names of walls and how spheres are put in."""
-    preset = own("settle_glass")
-    preset["scene"]["particles"][0]["radius"], preset["output"]["loads"] = "1.5 mm", False
-    preset["numerics"] = {"time_step": "1e-5 s"}
-    x, y, z = (float(side.split()[0]) for side in preset["scene"]["box"])
-    spans = {"x": x / 2, "y": y / 2}
-    planes = [("floor", "z", 0.0), ("left", "x", -x / 2), ("right", "x", x / 2), ("front", "y", -y / 2)]
-    wall = [
-        {"name": name, "kind": "plane", "axis": axis, "at": f"{at} mm", "material": "glass"}
-        for name, axis, at in (*planes, ("back", "y", y / 2))
-    ]
-    region = {axis: mm(-half, half) for axis, half in spans.items()} | {"z": mm(0, z)}
-    fill = {"name": "bed", "region": region, "particles": preset["scene"]["particles"], "count": 1000}
-    room = region | {"z": mm(0, 1.5 * z)}
-    phase = timed("settle", preset["scene"]["duration"])
-    scene = {"kind": "parts", "room": room, "wall": wall, "fill": [fill], "phase": [phase]}
-    one, other = (deck_lines(data) for data in (preset, preset | {"scene": scene}))
-    only = [line for line in one ^ other if not line.startswith(("# settle:", "# parts:"))]
-    assert len(one) > 30 and len(only) == 2 and all("fix fill1 all insert/" in line for line in only)
-
-
 def test_a_hopper_is_a_wall_of_revolution():
     preset = own("hopper_beads")
     mesh = plan(parse(preset)).triangles["hopper"]
@@ -227,11 +204,6 @@ def test_a_hopper_is_a_wall_of_revolution():
     wall = {"name": "bin", "kind": "revolved", "material": "steel", "profile": profile}
     room = {k: ["-1 m", "1 m"] for k in "xyz"}
     assert np.abs(plan(parse(parts(wall=[wall], room=room))).triangles["bin"] - mesh).max() < 1e-12
-
-
-def deck_lines(data: dict) -> set[str]:
-    files = scene_deck.files(plan(parse(data, CASES / "settle_glass.toml")))
-    return {*(files["in.scene"] + files["setup.in"]).replace("wall_", "").splitlines()}
 
 
 def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from parts_cases import BED, BOX, linear, mm, parts, timed
+from parts_cases import BED, BOX, linear, mm, parts, pipe, timed
 from scene_runs import ran
 from test_parts_motions import PLATE
 
@@ -17,7 +17,7 @@ from epdem.report.scenes import charts
 pytestmark = pytest.mark.figures
 
 LID = {"name": "lid", "kind": "plate", "axis": "z", "center": mm(0, 0, 12), "size": mm(17.9, 17.9)}
-TUBE = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
+TUBE = pipe("tube", "0 mm", "30 mm", "18 mm")
 
 
 @pytest.fixture(scope="module")

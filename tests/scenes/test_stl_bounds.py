@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from parts_cases import parts, write_stl
-from scene_runs import run, write_case
+from parts_cases import mm, parts, timed, write_stl
+from scene_runs import ran
 
 from engines.lammps_decks import needs_lammps
 from engines.triangles import tiles
@@ -39,14 +39,14 @@ def thrown(engine, folder, walls, start, velocity, duration, **scene):
     (folder / "one.csv").write_text(f"x,y,z,radius,material,vx,vy,vz\n{numbers}\n")
     data = parts(
         wall=wall,
-        room={axis: ["-40 mm", "40 mm"] for axis in "xyz"},
+        room={axis: mm(-40, 40) for axis in "xyz"},
         fill=[{"name": "one", "file": "one.csv"}],
-        phase=[{"name": "fly", "duration": f"{duration} s"}],
+        phase=[timed("fly", f"{duration} s")],
         **scene,
     )
     data |= {"contact": {"friction": 0.3}, "numerics": {"time_step": "1e-6 s"}}
     data["output"] = {"rows": 100, "particles": 100, "loads": True}
-    return run(write_case(data, folder), engine=engine, out=folder / "out").results
+    return ran(data, folder, engine).results
 
 
 def assert_same_motion(mesh, planes):

@@ -113,6 +113,23 @@ def test_vtk_reads_walls_where_liggghts_has_them_with_their_stress(folder):
 
 
 @pytest.mark.liggghts
+def test_vtk_reads_a_line_for_each_contact(folder):
+    found = results.read(folder / "results.h5")
+    places = found.particles.set_index(["step", "id"])[["x", "y", "z"]]
+    for step, (_, blocks) in zip(steps_of(folder, "particles.*.bin"), frames(folder / "results.h5"), strict=True):
+        contacts = found.contacts[found.contacts["step"] == step]
+        lines, pairs = blocks["contacts"], (contacts["j"] > 0).to_numpy()
+        assert lines.GetNumberOfLines() == len(contacts)
+        if pairs.any():
+            ends, cells = points(lines).reshape(-1, 2, 3), lines.GetCellData()
+            assert ends[:, 0] == pytest.approx(places.loc[step].loc[contacts["i"]].to_numpy(), abs=1e-8)
+            assert ends[pairs, 1] == pytest.approx(places.loc[step].loc[contacts["j"][pairs]].to_numpy(), abs=1e-8)
+            assert np.array_equal(array(cells, "contact_force"), contacts[["force_x", "force_y", "force_z"]])
+            assert np.array_equal(array(cells, "contact_radius").ravel(), contacts["contact_radius"])
+    assert (found.contacts["j"] > 0).any()
+
+
+@pytest.mark.liggghts
 def test_the_group_stores_no_value_twice(folder):
     with h5py.File(folder / "results.h5") as file:
         data = file["VTKHDF/spheres/PointData"]

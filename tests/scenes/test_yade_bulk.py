@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scene_runs import run, write_deck
+from parts_cases import mm, own
+from scene_runs import ran, run, write_case, write_deck
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
@@ -22,23 +23,16 @@ from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.columns import named_rows
 
 CASES = Path(__file__).parents[2] / "cases"
-BEADS = {"box": '["9 mm", "9 mm", "30 mm"]', "count": "40", "duration": '"0.3 s"'}
-FALL = {"box": '["9 mm", "9 mm", "16 mm"]', "count": "20", "duration": '"0.07 s"', "error": "1e-3"}
-POWDER = {"box": '["0.4 mm", "0.4 mm", "0.65 mm"]', "count": "50", "height": '"0.22 mm"', "speed": '"2 m/s"'}
+BEADS = {"box": mm(9, 9, 30), "count": 40, "duration": "0.3 s"}
+FALL = {"box": mm(9, 9, 16), "count": 20, "duration": "0.07 s"}
+POWDER = {"box": mm(0.4, 0.4, 0.65), "count": 50, "height": "0.22 mm", "speed": "2 m/s"}
 
 
-def small(name: str, folder: Path, keys: dict[str, str], contact: str | None = None) -> Path:
-    """A shrunk copy of a case, a press with thornton; `contact` replaces its section ('' removes it)."""
-    text = (CASES / f"{name}.toml").read_text()
-    text = re.sub(r'"cavity"\n(\w+ = true\n)+', '"thornton"\n', text)
-    for key, value in keys.items():
-        text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
-    if contact is not None:
-        text = re.sub(r"\[contact\]\n(.+\n)+", contact, text)
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "case.toml"
-    path.write_text(text)
-    return path
+def small(name: str, keys: dict, contact: dict | None = None, **tables: dict) -> dict:
+    """A shrunk copy of a case with thornton; `contact` replaces its table."""
+    data = own(name) | {"law": {"name": "thornton"}} | tables
+    data |= {"scene": data["scene"] | keys}
+    return data if contact is None else data | {"contact": contact}
 
 
 def verdicts(outcome) -> dict[str, bool]:
@@ -49,7 +43,7 @@ def verdicts(outcome) -> dict[str, bool]:
 @pytest.mark.yade("module")
 @pytest.mark.parametrize("sides", ["walls", "periodic"])
 def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
-    path = small("settle_glass", tmp_path, BEADS | {"walls": '"glass"' + "\nperiodic = true" * (sides == "periodic")})
+    path = write_case(small("settle_glass", BEADS | {"periodic": sides == "periodic"}), tmp_path)
     reported = []
     outcome = run(path, engine="yade", out=tmp_path / "out", report=lambda step, steps: reported.append((step, steps)))
     rows, spheres = outcome.results.rows, outcome.results.particles
@@ -67,9 +61,8 @@ def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
 @pytest.mark.yade("module")
 @pytest.mark.parametrize("law", ["hertz", "thornton", "cavity"])
 def test_the_energy_of_a_frictionless_bed_in_yade_leaves_nothing_over(law, tmp_path):
-    path = small("settle_glass", tmp_path, FALL, "")
-    path.write_text(path.read_text().replace('"thornton"', f'"{law}"'))
-    outcome = run(path, engine="yade", out=tmp_path / "out")
+    data = small("settle_glass", FALL, {}, law={"name": law}, numerics={"error": 1e-3})
+    outcome = ran(data, tmp_path, "yade")
     table = outcome.results.energy_balance
     fallen = table["gravity"].iloc[0] - table["gravity"].min()
     # velocity Verlet at the step for e_n within 1e-3 leaves 1e-4; a missing term would be tens of percent
@@ -102,7 +95,7 @@ def pressed(path: Path, folder: Path):
 @pytest.mark.yade("module")
 @pytest.mark.liggghts
 def test_spheres_under_a_press_take_the_same_way_in_yade_and_liggghts_until_it_is_chaos(tmp_path):
-    outcome, other = pressed(small("compaction_powder", tmp_path, POWDER, ""), tmp_path)
+    outcome, other = pressed(write_case(small("compaction_powder", POWDER, {}), tmp_path), tmp_path)
     early = slice(1, len(other) // 5)
     rows = outcome.results.rows
     # both take the same steps; what YADE leaves of a force, 1e-6 of it, grows a few times in each collision
@@ -114,7 +107,7 @@ def test_spheres_under_a_press_take_the_same_way_in_yade_and_liggghts_until_it_i
 @pytest.mark.yade("module")
 @pytest.mark.liggghts
 def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_in_both_codes(tmp_path):
-    outcome, other = pressed(small("compaction_powder", tmp_path, POWDER), tmp_path)
+    outcome, other = pressed(write_case(small("compaction_powder", POWDER), tmp_path), tmp_path)
     rows = outcome.results.rows
     # the ways part by chaos: four random fillings of this box differ by -4, 2, 2 and 3 % between the codes
     assert rows["plate_force"].max() == pytest.approx(other["plate_force"].max(), rel=0.1)
@@ -138,16 +131,15 @@ def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_i
 @pytest.mark.yade("module")
 def test_walls_rougher_than_the_spheres_make_them_spin_in_yade(tmp_path):
     """YADE's own rule is the smaller of two friction angles: then none would turn."""
-    keys = FALL | {"error": "1e-2", "duration": '"0.06 s"'}
-    contact = "[contact]\nfriction = 0.0\nwall_friction = 0.4\n"
-    outcome = run(small("settle_glass", tmp_path, keys, contact), engine="yade", out=tmp_path / "out")
+    data = small("settle_glass", FALL | {"duration": "0.06 s"}, {"friction": 0.0, "wall_friction": 0.4})
+    outcome = ran(data, tmp_path, "yade")
     last = outcome.results.particles.iloc[-20:]
     assert np.abs(last[["omega_x", "omega_y"]]).to_numpy().max() > 1.0
 
 
 @pytest.mark.yade("alone", "module")
 def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
-    path = small("settle_glass", tmp_path, FALL | {"error": "1e-2", "duration": '"0.02 s"'})
+    path = write_case(small("settle_glass", FALL | {"duration": "0.02 s"}), tmp_path)
     assert not cli.app(["deck", str(path), "--engine", "yade", "--out", str(tmp_path / "deck")], standalone_mode=False)
     with (tmp_path / "deck/scene.py").open("a") as deck:
         deck.write("print('YADE leaves a folder:', Path(O.tmpFilename()).parent.exists(), file=sys.stderr)\n")

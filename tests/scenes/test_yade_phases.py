@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Phases of scenes in YADE: spheres that come and leave, conditions, walls that turn, press or come; drum, peening."""
+"""Scenes of parts in YADE: spheres that come and leave, conditions, walls that turn, press or come; drum, peening."""
+
+import math
 
 import numpy as np
 import pytest
-from parts_cases import BED, BOX, FLOOR, driven, linear, mm, mps, own, parts, timed, vibrating
+from parts_cases import BED, BOX, FLOOR, bead, driven, linear, mm, mps, own, parts, timed, vibrating
 from scene_runs import assert_alike, in_hosts, ran
 from test_parts_motions import FALL, PLATE
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
+from epdem.engines.yade import deck as scene_deck
 from epdem.errors import EngineError
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables.columns import last_frame
-
-pytestmark = pytest.mark.yade("module")
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
 UP = linear("lid", 0, 0, 0.2)
@@ -49,6 +50,7 @@ def balls(**scene):
     return data
 
 
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
 @pytest.mark.parametrize(
     ("move", "until"), [(UP, COUNT), (SPIN, FORCE), (SHAKE, COUNT), (PRESS, FORCE)], ids=lambda x: x.get("kind", "")
@@ -69,6 +71,7 @@ def test_spheres_gates_and_conditions_do_the_same_in_both_engines(until, move, t
     assert np.abs(ours.rows["lid_force_z"] - theirs.rows["lid_force_z"]).max() < 0.05 * force
 
 
+@pytest.mark.yade("module")
 def test_a_stream_has_its_rate_and_ends_with_its_count(tmp_path):
     """2 kHz from a layer at the top; with a wall that turns below, whose work closes the balance."""
     layer = BED["region"] | {"z": mm(30, 38)}
@@ -91,6 +94,7 @@ def test_a_stream_has_its_rate_and_ends_with_its_count(tmp_path):
     assert first["z"].between(0.029, 0.0385).all() and (first["vz"] < -0.9).all()
 
 
+@pytest.mark.yade("module")
 def test_a_fill_of_a_later_phase_finds_places_between_the_spheres_that_are_there(tmp_path):
     more = BED | {"name": "more", "count": 30, "phase": "on", "region": {"diameter": "17 mm", "z": mm(0, 30)}}
     still = [FALL | {"duration": "1 ms"}, FALL | timed("on", "1 ms")]
@@ -107,6 +111,7 @@ def test_a_fill_of_a_later_phase_finds_places_between_the_spheres_that_are_there
     assert late["step"].min() >= found.phases["begin"].iloc[1]
 
 
+@pytest.mark.yade("module")
 def test_a_fill_without_room_ends_the_run_with_one_sentence(tmp_path):
     inside = {"x": mm(-4, 4), "y": mm(-4, 4), "z": mm(5, 13)}
     more = BED | {"name": "more", "count": 2, "phase": "on", "region": inside}
@@ -116,6 +121,7 @@ def test_a_fill_without_room_ends_the_run_with_one_sentence(tmp_path):
         ran(data, tmp_path, "yade")
 
 
+@pytest.mark.yade("module")
 def test_motions_that_phases_name_in_another_order_go_on():
     lids = [PLATE | {"name": name, "center": mm(0, 0, z)} for name, z in (("lid", 6), ("roof", 9))]
     both = [UP, UP | {"wall": "roof"}]
@@ -125,6 +131,7 @@ def test_motions_that_phases_name_in_another_order_go_on():
     assert text.count("def motions()") == 1
 
 
+@pytest.mark.yade("module")
 @pytest.mark.lammps
 @pytest.mark.liggghts
 def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(tmp_path):
@@ -149,6 +156,7 @@ def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(tmp_pat
     assert (np.abs(theirs[columns]).max() > 0).all()
 
 
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
 @pytest.mark.parametrize("size", mm(20, 11), ids=["endless", "with edges"])
 def test_a_plate_shakes_spheres_of_a_periodic_room_as_in_liggghts(size, tmp_path):
@@ -180,6 +188,7 @@ def test_a_plate_shakes_spheres_of_a_periodic_room_as_in_liggghts(size, tmp_path
     assert (np.abs(np.diff(theirs.particles.query("id == 1")["vx"])) > 0.05).any(), "met across the side"
 
 
+@pytest.mark.yade("module")
 def test_the_torque_of_a_drum_gives_its_bed_the_energy_that_it_has(tmp_path):
     """With partial slip, of which every energy is known, so that a wrong torque leaves a balance."""
     data = own("drum_beads")
@@ -195,6 +204,7 @@ def test_the_torque_of_a_drum_gives_its_bed_the_energy_that_it_has(tmp_path):
     assert balance["balance"].abs().max() < 0.01 * balance["work"].iloc[-1]
 
 
+@pytest.mark.yade("module")
 def test_shot_rebounds_and_leaves_with_its_energy(tmp_path):
     """The check of the case compares the rebound of single shot with theory; what leaves takes its energy along."""
     data = own("peening_steel")
@@ -205,3 +215,72 @@ def test_shot_rebounds_and_leaves_with_its_energy(tmp_path):
     assert outcome.passed, found.checks
     assert found.rows["particles"].iloc[0] == 12 > found.rows["particles"].iloc[-1]
     assert found.energy_balance["lost_spheres_energy"].iloc[-1] > 0
+
+
+@pytest.mark.yade("module")
+def test_beads_leave_a_hopper_when_its_shutter_is_gone_in_yade(tmp_path):
+    data = own("hopper_beads")
+    data["scene"] |= {"bin_diameter": "20 mm", "bin_height": "30 mm", "outlet": "10 mm", "outlet_height": "10 mm"}
+    data["scene"] |= {"count": 30, "fill_time": "0.12 s", "duration": "0.08 s"}
+    data |= {"output": {"rows": 6, "particles": 10, "energy": True}, "numerics": {"time_step": "5e-5 s"}}
+    outcome = ran(data, tmp_path, "yade")
+    spheres, contacts, (fill, _) = outcome.results.particles, outcome.results.contacts, outcome.plan.phases
+    outlet = next(w.at for w in outcome.plan.scene.gates)
+    before, after = spheres[spheres["step"] <= fill.end], spheres[spheres["step"] == outcome.plan.steps]
+    assert outcome.passed and len(after) == 30
+    assert before["z"].min() > outlet, "held"
+    assert (after["z"] < outlet).mean() > 0.9, "through, but for some on the cone"
+    resting = contacts["step"] <= fill.end
+    assert {"hopper", "shutter"} <= {*contacts[resting]["wall"]} and "shutter" not in {*contacts[~resting]["wall"]}
+
+
+BODIES = """x,y,z,radius,vx,vy,vz
+0.0002,0.0001,0.0162,0.0015,0,0,-1
+-0.0051,0.0042,0.0115,0.0012,0.3,0,-0.5
+"""
+
+
+@pytest.mark.yade("module")
+@pytest.mark.liggghts
+def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
+    """Without friction (YADE has another); of a file, one frozen; a plate of triangles rises; two time steps."""
+    table = {"name": "table", "file": str(tmp_path / "spheres.csv"), "material": "glass"}
+    (tmp_path / "spheres.csv").write_text(BODIES)
+    frozen = bead("held", mm(0, 0, 11), "2 mm", "steel", frozen=True)
+    fast = bead("fast", mm(5, -4, 12), "1.5 mm", "glass", velocity=mps(0, 0, -1))
+    up = linear("lid", 0, 0, 0.3)
+    phases = [FALL | {"duration": "5 ms", "move": [up]}, FALL | timed("on", "5 ms")]
+    data = parts(wall=[FLOOR, PLATE | {"center": mm(0, 1, 6)}], fill=[table], body=[frozen, fast], phase=phases)
+    data["scene"]["phase"][1]["time_step"] = "5e-6 s"
+    data["numerics"] = {"time_step": "1e-5 s"}
+    data["output"] = {"rows": 10, "particles": 10, "loads": True}
+    found = in_hosts(data, tmp_path, "yade", "liggghts")
+    one, other = (r.particles.set_index(["step", "id"]) for r in found)
+    assert one.index.equals(other.index) and len(one) == 4 * 13  # rows of 125 steps end both phases
+    speeds = ["vx", "vy", "vz"]
+    assert np.abs(one[["x", "y", "z"]] - other[["x", "y", "z"]]).to_numpy().max() < 1e-6
+    difference = np.abs(one[speeds] - other[speeds]).max(axis=1)
+    assert (
+        difference.max() < 2e-3 and difference.loc[other.index[-1][0]].max() < 5e-5
+    )  # half a step of a contact, after
+    assert other.loc[other.index[-1][0], "vz"].max() > 0.3  # something rebounds
+    assert not one.xs(3, level="id")[speeds].to_numpy().any()  # the frozen one
+    loads = [f"lid_force_{axis}" for axis in "xyz"] + ["floor_force_z"]
+    one, other = (r.rows[[*loads, "time", "lid_torque_y"]].to_numpy() for r in found)
+    assert np.abs(one - other).max(axis=0) == pytest.approx(0, abs=0.02 * np.abs(other[:, 2]).max())
+    assert np.abs(other[:, 2]).max() > 1e-3 and found[0].phases.equals(found[1].phases)
+
+
+def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two():
+    """Of a pair that its MatchMaker does not name YADE takes the mean of two angles."""
+    data = parts() | {"contact": {"friction": 0.3, "wall_friction": 0.6}}
+    found = scene_deck.deck(plan(parse(data)))
+    angles = dict.fromkeys([(0, 0)], math.atan(0.3)) | dict.fromkeys([(0, 1), (1, 1)], math.atan(0.6))
+    (friction,) = [v for v in found.contact.functors.pairs if v.name == "frictAngle"]
+    assert friction.matches == tuple((*pair, pytest.approx(angle)) for pair, angle in angles.items())
+
+
+def test_a_wall_of_any_name_leaves_the_table_of_the_spheres():
+    texts = scene_deck.files(plan(parse(parts(wall=[FLOOR, PLATE | {"name": "spheres"}]))))
+    assert len(texts["spheres.txt"].splitlines()) == 1 + BED["count"]
+    assert len(texts["wall_spheres.txt"].splitlines()) == 1 + 1  # rectangle

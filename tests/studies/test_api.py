@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pint
 import pytest
-from test_pages import blocks, play
+from test_guide import blocks, play
 
 from epdem import Case, Scene, SceneRun, calibrate, deck, predict, read, run, sweep, theory
 from epdem.errors import CaseError

@@ -132,18 +132,6 @@ def test_softening_the_modulus_alone_loses_e_n(tmp_path):
     assert np.abs(now.e_n / hard.e_n - 1).max() > 0.5
 
 
-def test_the_twin_says_what_it_changes_and_keeps_the_rest_of_the_file():
-    twin = soften(STEEL, 10.0)
-    assert [c.place for c in twin.changes] == [
-        "materials.steel.young_modulus",
-        "materials.steel.yield_stress",
-        "case.name",
-    ]
-    before, after = STEEL.read_text().splitlines(), twin.text.splitlines()
-    assert len(before) == len(after)
-    assert sum(a != b for a, b in zip(before, after, strict=True)) == 3
-
-
 ODD = """# a case in another order, with other quotes
 law = { name = "thornton", 'yield_pressure' = '2.8 GPa' } # inline
 
@@ -169,8 +157,9 @@ def test_the_twin_of_a_case_in_any_order_and_style_of_toml_renames_the_case_and_
     """Values by hand: 208/10 GPa and 2.8/10^0.8 GPa; every comment and every other line stays."""
     path = tmp_path / "odd.toml"
     path.write_text(ODD)
-    text = soften(path, 10.0).text
-    data = tomllib.loads(text)
+    twin = soften(path, 10.0)
+    text, data = twin.text, tomllib.loads(twin.text)
+    assert {c.place for c in twin.changes} == {"law.yield_pressure", "materials.steel.young_modulus", "case.name"}
     assert data["case"]["name"] == "odd_soft10" and data["case"]["title"] == 'name = "no name at all"'
     assert data["law"]["name"] == "thornton"
     assert data["materials"]["steel"]["young_modulus"] == "20.8 GPa"
@@ -191,33 +180,18 @@ def test_softening_replaces_a_file_only_when_asked(tmp_path):
     assert load(target).name == "steel_wall_soft10"
 
 
-def test_the_twin_of_a_scene_scales_the_strength_of_every_material():
-    path = CASES / "peening_steel.toml"
-    hard, soft = scenes.load(path), scenes.parse(tomllib.loads(soften(path, 32.0).text))
-    for name, value in strengths(hard).items():
-        assert math.isclose(strengths(soft)[name], value / 32.0**0.8, rel_tol=1e-12)
-        assert math.isclose(soft.materials[name].young_modulus, 208e9 / 32.0, rel_tol=1e-12)
-
-
 PRESS = """
-[case]
-name = "pressed"
-title = "a plate presses spheres"
-source = "a test"
+case = { name = "pressed", title = "a plate presses spheres", source = "a test" }
+law.name = "thornton"
 
-[materials.steel]
-young_modulus = "208 GPa"
-poisson_ratio = 0.3
-density = "7850 kg/m^3"
-yield_stress = "1 GPa"
-
-[law]
-name = "thornton"
+[materials]
+steel = { young_modulus = "208 GPa", poisson_ratio = 0.3, density = "7850 kg/m^3", yield_stress = "1 GPa" }
 
 [scene]
 kind = "parts"
 gravity = "GRAVITY m/s^2"
 room = { x = ["-5 mm", "5 mm"], y = ["-5 mm", "5 mm"], z = ["0 mm", "20 mm"] }
+body = [{ name = "ball", material = "steel", radius = "1 mm", position = ["0 mm", "0 mm", "5 mm"] }]
 
 [[scene.wall]]
 name = "lid"
@@ -226,12 +200,6 @@ axis = "z"
 center = ["0 mm", "0 mm", "15 mm"]
 size = ["9 mm", "9 mm"]
 material = "steel"
-
-[[scene.body]]
-name = "ball"
-material = "steel"
-radius = "1 mm"
-position = ["0 mm", "0 mm", "5 mm"]
 
 [[scene.phase]]
 name = "rest"
@@ -309,17 +277,3 @@ def test_the_sticking_speed_of_a_twin_is_that_of_the_case(tmp_path):
     assert V_s[1] == pytest.approx(V_s[0], rel=1e-8) and V_s[0] > 0.05
     at = [predict(replace(experiment(load(p)), speed=np.array([1.0000001 * V_s[0]]))).e_n[0] for p in (path, soft)]
     assert at[1] == pytest.approx(at[0], rel=1e-8) and 0 < at[0] < 1e-3
-
-
-def test_pressures_of_a_press_fall_with_the_strength_of_its_twin():
-    """At the same density the pressure over the strength is the same."""
-    path = Path(__file__).parents[2] / "cases/press_tablet.toml"
-    data = tomllib.loads(soften(path, 10.0).text)
-    hard = tomllib.loads(path.read_text())
-
-    def number(text):
-        return float(text.split()[0])
-
-    for before, after in zip(hard["scene"]["stages"], data["scene"]["stages"], strict=True):
-        strengths = [number(x["materials"]["powder"]["yield_stress"]) for x in (hard, data)]
-        assert number(after) / strengths[1] == pytest.approx(number(before) / strengths[0], rel=1e-12)
