@@ -167,8 +167,7 @@ def _rebound_speed(p: ScenePlan, tables: Tables) -> list[Panel]:
 def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
     """Force over displacement of each wall that moves only with constant velocities and whose force is in the rows:
     a curve for each of its phases, both along the first of its motions."""
-    rows, ends = tables["rows"], [0, *(phase.end for phase in p.phases)]
-    step = rows["step"].to_numpy()
+    rows, step = tables["rows"], tables["rows"]["step"].to_numpy()
     middle, found = p.middles(rows), []
     named = {row.wall: row for row in p.scene.row if row.force and not row.area}
     for name in dict.fromkeys([*p.loads, *named]):
@@ -184,9 +183,9 @@ def _moving_walls(p: ScenePlan, tables: Tables) -> list[Panel]:
         start = p.triangles[name][0, 0]
         way = sum(along[k] * (place(p, name, k, middle) - start[k]) for k in range(3))
         series: list[Series] = []
-        for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True):
+        for phase in p.phase_steps:
             if any(phase.velocity(name)):
-                during = (step > begin) & (step <= end)
+                during = (step > phase.end - phase.steps) & (step <= phase.end)
                 series.append(Series(phase.name, way[during], force[during], len(series) % len(PALETTE)))
         found.append(Panel(Axis(f"displacement of {name}", "m"), Axis(f"force on {name}", "N"), series))
     return found

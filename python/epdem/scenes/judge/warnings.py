@@ -379,8 +379,8 @@ def _gains_energy(p: ScenePlan, tables: Tables) -> list[str]:
     """A sentence for a bed that gains energy: by its balance, or because it moves faster than a punch can drive it."""
     checks, rows = tables["checks"], tables["rows"]
     mass, fast = volume(p, tables) * max(p.case.materials[part.material].density for part in p.scene.filled), False
-    for phase, times in zip(p.phases, p.phase_table.to_dict("records"), strict=True):
-        during = rows[(rows["step"] > times["begin"]) & (rows["step"] <= times["end"])]
+    for phase in p.phase_steps:
+        during = rows[(rows["step"] > phase.end - phase.steps) & (rows["step"] <= phase.end)]
         speed = max(0.0, towards(p, phase))
         fast |= speed > 0.0 and bool((during["kinetic_energy"] > 0.5 * mass * (FAST * speed) ** 2).any())
     if not fast and checks[checks["key"].isin(["energy_residual", "energy_gained"])]["passed"].all():
@@ -415,11 +415,11 @@ def _slower(p: ScenePlan) -> list[str]:
 def _force_not_reached(p: ScenePlan, rows: pd.DataFrame) -> list[str]:
     """A sentence for each wall that a force drives whose force is not the requested one at the end of a phase, which no
     condition ends."""
-    found, begin = [], 0
-    for phase in p.phases:
+    found = []
+    for phase in p.phase_steps:
         presses = {name: move.press for name, move in phase.moves.items() if move.press}
         for name, move in presses.items() if not phase.case.condition else ():
-            after = phase.end - max(p.every, TAIL * (phase.end - begin))
+            after = phase.end - max(p.every, TAIL * phase.steps)
             tail = rows[(rows["step"] > after) & (rows["step"] <= phase.end)]
             force = -float((tail[[f"{name}_force_{axis}" for axis in "xyz"]] @ np.array(move.direction)).mean())
             if abs(force / move.force - 1.0) > OFF:
@@ -427,5 +427,4 @@ def _force_not_reached(p: ScenePlan, rows: pd.DataFrame) -> list[str]:
                     f"scene.phase.{phase.name}.move: the force of wall {name} is {force:.4g} N in the last rows, "
                     f"requested are {move.force:g} N; give a longer duration, or a lower highest_speed if it oscillates"
                 )
-        begin = phase.end
     return found

@@ -165,51 +165,42 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     return tuple(found)
 
 
-def _fills(case: SceneCase) -> Iterator[tuple[str, list[Size], float]]:
-    """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
-    that the mass is the mass of the placed spheres."""
+def _components(case: SceneCase) -> Iterator[tuple[str, list[Size], float, float]]:
+    """(place, sizes, requested mass [kg], mass of the fill [kg]) of each component of each fill; a number of spheres
+    requests no mass, so that the mass of the fill is the mass of the placed spheres."""
     for f in case.parts.random_fills:
-        sizes = count_sizes(case, f)
-        mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
-        drawn = sizes if f.rate is None else [size._replace(placed=None) for size in sizes]
-        yield case.parts.place(f"scene.fill.{f.name}.particles"), drawn, mass
-
-
-def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
-    return ((n, list(group)) for n, group in groupby(sizes, key=lambda size: size.component))
+        sizes, place = count_sizes(case, f), case.parts.place(f"scene.fill.{f.name}.particles")
+        whole = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
+        ideal = sum(x.mass * x.requested for x in sizes)
+        for n, group in groupby(sizes, key=lambda size: size.component):
+            own = [x if f.rate is None else x._replace(placed=None) for x in group]
+            yield f"{place}.{n}", own, whole / ideal * sum(x.mass * x.requested for x in own), whole
 
 
 def refuse_missing(case: SceneCase) -> None:
     """Raise CaseError for a component without a sphere."""
-    for place, sizes, _ in _fills(case):
-        for n, own in _by_component(sizes):
-            if all(size.missing for size in own):
-                total = sum(size.requested for size in own)
-                raise CaseError(
-                    f"{place}.{n}: its share of the mass is {total:.2g} of one sphere of {own[0].material}, "
-                    "so that the fill has none; give more or smaller spheres, or remove the component"
-                )
+    for place, own, _, _ in _components(case):
+        if all(size.missing for size in own):
+            raise CaseError(
+                f"{place}: its share of the mass is {sum(size.requested for size in own):.2g} of one sphere of "
+                f"{own[0].material}, so that the fill has none; give more or smaller spheres, or remove the component"
+            )
 
 
 def warnings(case: SceneCase) -> list[str]:
     """A sentence for each size without spheres, and for each component whose mass differs from the requested one."""
     found = []
-    for place, sizes, whole in _fills(case):
-        ideal = sum(size.mass * size.requested for size in sizes)
-        for n, own in _by_component(sizes):
-            found += [
-                f"{place}.{n}: 0 spheres with radius {size.radius:g} m, for its share of the mass is "
-                f"{size.requested:.2g} of one sphere; give more spheres, or other sizes"
-                for size in own
-                if size.missing
-            ]
-            if own[0].placed is None:
-                continue
-            requested = whole / ideal * sum(size.mass * size.requested for size in own)
-            mass = sum(size.mass * (size.placed or 0) for size in own)
-            if abs(mass - requested) > LARGEST_ERROR * whole:
-                found.append(
-                    f"{place}.{n}: whole spheres of {own[0].material} have {mass:.4g} kg, requested are "
-                    f"{requested:.4g} kg; give more or smaller spheres"
-                )
+    for place, own, requested, whole in _components(case):
+        found += [
+            f"{place}: 0 spheres with radius {size.radius:g} m, for its share of the mass is {size.requested:.2g} of "
+            "one sphere; give more spheres, or other sizes"
+            for size in own
+            if size.missing
+        ]
+        mass = sum(size.mass * (size.placed or 0) for size in own)
+        if own[0].placed is not None and abs(mass - requested) > LARGEST_ERROR * whole:
+            found.append(
+                f"{place}: whole spheres of {own[0].material} have {mass:.4g} kg, requested are {requested:.4g} kg; "
+                "give more or smaller spheres"
+            )
     return found

@@ -275,10 +275,8 @@ def refuse_bodies_in_walls(s: Parts, triangles: dict[str, FloatArray]) -> None:
 
 def refuse_bodies_in_moved_walls(p: "ScenePlan", ways: Mapping[tuple[str, str], FloatArray]) -> None:
     """Raise EngineError for the same of a plan of a run. ways: (phase, wall) that a force drives, way [m] before it."""
-    begin = 0
-    for phase in p.phases if p.scene.later else ():
-        walls = meshes.at_end(p.motions_until(begin), p.triangles)
+    for phase in p.phase_steps if p.scene.later else ():
+        walls = meshes.at_end(p.motions_until(phase.end - phase.steps), p.triangles)
         walls |= {wall: p.triangles[wall] + way for (name, wall), way in ways.items() if name == phase.name}
-        if phase.end > begin and (said := _in_wall(p.scene, phase.name, walls)):
+        if phase.steps and (said := _in_wall(p.scene, phase.name, walls)):
             raise EngineError(said)
-        begin = phase.end
