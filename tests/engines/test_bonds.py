@@ -58,6 +58,24 @@ def test_a_bond_breaks_at_its_strength_times_the_area_of_the_dent_and_stays_brok
 
 
 @pytest.mark.parametrize("host", HOSTS)
+def test_a_broken_bond_does_not_heal(host, tmp_path):
+    """Heavy spheres on a path: into each other, apart until the bond breaks, half of the way back, and apart again."""
+    n = np.array([0.6, 0.48, 0.64])
+    v = SPEED * np.stack([-n, n])
+    moves = tuple((sign * v, steps) for sign, steps in ((1, 400), (-1, 240), (1, 110), (-1, 110)))
+    heavy = POWDER | {"density": 1e18}
+    x = np.array([R * n, -R * n])
+    bond = ("bond", STRENGTH)
+    found = frames(
+        host, tmp_path, Scene("cavity", [heavy], x, v, 1e-8, radius=R, moves=moves, compaction=True, cohesion=bond)
+    )
+    overlap, force = along(found)
+    first, second = force[:640], force[645:]
+    assert first.min() < -0.5 * STRENGTH * np.pi * float(LAW.radius(overlap.max())) ** 2
+    assert second.min() == 0.0 and second.max() > 0.0  # pressed again, but never pulled
+
+
+@pytest.mark.parametrize("host", HOSTS)
 def test_a_strong_bond_holds_the_spheres_together(host, tmp_path):
     found = frames(host, tmp_path, pair(20 * STRENGTH, steps=5000))
     overlap, force = along(found)

@@ -204,7 +204,7 @@ WRONG = {
     "twice": ("history 0.3", "history 0.3 tangential none", "option tangential stands twice"),
     "restitution": ("history 0.3", "history 0.3 restitution 0.1", "restitution e = 0.1, must lie in [0.14, 1]"),
     "rolling": ("history 0.3", "history 0.3 rolling sds 0.1", "rolling = sds, must be none, cdt or epsd2"),
-    "cohesion": ("history 0.3", "history 0.3 cohesion jkr 1", "cohesion = jkr, must be none, sjkr or sjkr2"),
+    "cohesion": ("history 0.3", "history 0.3 cohesion jkr 1", "cohesion = jkr, must be none, sjkr, sjkr2 or bond"),
     "both attract": (
         f"{THORNTON} tangential history 0.3",
         "jkr 1e8 0.3 0.1 cohesion sjkr 1e3",
