@@ -103,7 +103,7 @@ both limits.
 In a dense bed the largest stable step is a smaller fraction of the limit of one contact: 0.5 in a face-centred cubic
 packing without friction, sqrt(1/(20 kappa)) = 0.246 (nu = 0.3, kappa = 4 G*/E*; `epdem.theory.timestep`) with sticking
 contacts; at 0.24 and 0.48 packings in LIGGGHTS and YADE keep their energy, at 0.26 and 0.52 it grows 1e5-fold and more
-(`pytest tests/scenes/test_bed_step.py tests/engines/test_yade_packing.py`). Scenes stay below 0.8 of these limits.
+(`pytest tests/scenes/test_limits.py tests/engines/test_yade_packing.py`). Scenes stay below 0.8 of these limits.
 Three bulk scenes in LIGGGHTS (2,000 steel spheres under a plate at 20 m/s; a gas of 1 TPa and 1 MPa spheres; two blocks
 that collide at 300 m/s) change their energy by at most {off:.1g} of the input, lose {lost} spheres, and end on 1 and 2
 ranks within {difference:.0e} of a radius ([stability_bulk.csv](data/stability_bulk.csv)).
