@@ -111,14 +111,6 @@ def deviations(ours, theirs, *names):
         yield np.abs(one - two).max() / two.max()
 
 
-@pytest.mark.yade("module")
-@pytest.mark.liggghts
-def test_stress_and_wear_in_yade_are_those_in_liggghts(tmp_path):
-    path = write_case(strikes("1e-9 m^2/N", "3e-9 m^2/N"), tmp_path)
-    ours, theirs = (run(path, engine=tool, out=tmp_path / tool).results.walls for tool in ("yade", "liggghts"))
-    assert max(deviations(ours, theirs, "area", "normal_stress", "shear_stress", "wear")) <= 0.01
-
-
 @pytest.mark.lammps
 @pytest.mark.liggghts
 @pytest.mark.parametrize("kind", ["plate", "stl", "turn"])
@@ -140,22 +132,6 @@ def test_stress_and_wear_in_lammps_are_those_in_liggghts(kind, tmp_path):
     ours, theirs = (run(path, engine=tool, out=tmp_path / tool).results.walls for tool in ("lammps", "liggghts"))
     assert max(deviations(ours, theirs, "area", "normal_stress", "shear_stress", "wear")) <= 1e-9
     assert list(ours.columns) == list(theirs.columns)
-
-
-@pytest.mark.yade("module")
-def test_spheres_at_rest_press_a_periodic_plate_in_yade_with_their_weight(tmp_path):
-    """At the overlap at which Hertz's force is the weight; YADE has the plate as one triangle."""
-    plate = {"name": "plate", "kind": "plate", "axis": "z", "center": mm(0, 0, 0), "size": mm(20, 20)}
-    weight, young = 2500 * 4 / 3 * math.pi * 1.5e-3**3 * 9.81, 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
-    z = 1e3 * (1.5e-3 - (0.75 * weight / young / math.sqrt(1.5e-3)) ** (2 / 3))
-    spheres = [bead(f"ball{n}", [f"{x} mm", "1 mm", f"{z!r} mm"], "1.5 mm", "glass") for n, x in enumerate((-9, 0, 4))]
-    data = parts(wall=[plate | {"material": "steel", "stress": True}], fill=[], body=spheres, periodic=True)
-    data |= {"law": {"name": "hertz"}, "output": {"rows": 4, "particles": 4}}
-    data["scene"]["phase"] = [timed("rest", "1 ms")]
-    walls = ran(data, tmp_path, "yade").results.walls
-    assert walls["area"].to_numpy() == pytest.approx(2e-4) and len(walls) == 2 * 6  # 50 steps are five rows
-    assert walls["normal_stress"].to_numpy() == pytest.approx(3 * weight / 4e-4, rel=1e-6)
-    assert not walls["shear_stress"].any() and not walls["wear"].any()
 
 
 @given(

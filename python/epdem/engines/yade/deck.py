@@ -90,6 +90,9 @@ def check(p: ScenePlan) -> None:
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
     }
+    for name in p.stress_walls:
+        key = "wear" if p.scene.meshes[name].wear else "stress"
+        unknown[f"scene.wall.{name}.{key}"] = (True, "a YADE scene writes the force of a whole wall")
     for place, (value, reason) in unknown.items():
         refuse(place, value, reason)
 
@@ -160,7 +163,6 @@ def deck(p: ScenePlan) -> SceneDeck:
     sides = zip(p.scene.periods, p.box[0::2], p.box[1::2], strict=True)
     x, y, z = (period or 2.0 * (high - low) for period, low, high in sides)
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
-    every_step = p.row_columns or any(mesh.wear for mesh in p.scene.meshes.values())
     return SceneDeck(
         plan=p,
         contact=ContactClasses(m.law, functors(m, shapes, recordStrain=True), materials(m)),
@@ -171,7 +173,7 @@ def deck(p: ScenePlan) -> SceneDeck:
         skin=skin,
         phases=phases,
         motions=tuple(motion for phase in phases for motion in phase.motions),
-        sampling=1 if every_step else p.sampling if p.measured_walls else p.every,
+        sampling=1 if p.row_columns else p.sampling if p.measured_walls else p.every,
         works=tuple(WORKS[name].words["yade"] for name in p.works if "yade" in WORKS[name].words),
         loads=tuple(loads(p)),
     )

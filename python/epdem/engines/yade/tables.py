@@ -17,7 +17,7 @@ from .. import log
 from ..frames import Frames, Kinds
 from .deck import axes
 from .launcher import OUT
-from .scene_parts import is_endless, wall_names
+from .scene_parts import wall_names
 
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m], whether the
 # bodies are attached, force on the first [N], unit normal; with compaction what growth adds
@@ -44,11 +44,10 @@ def trajectory(plan: Plan, folder: Path, seconds: dict[str, float]) -> Trajector
 
 
 def kinds(p: ScenePlan) -> Kinds:
-    """The files of frames: spheres, contacts, and the triangles of walls."""
+    """The files of frames: spheres and contacts."""
     found = {
         "particles": (p.frames, columns.columns_of_frames(p)),
         "contacts": (p.contacts, CONTACT if p.model.compaction else CONTACT[:11]),
-        "triangles": (p.frames * bool(p.stress_walls), ["normal_stress", "shear_stress", "wear"]),
     }
     return {
         kind: (f"{kind}.{{}}.npy", p.frame_steps(every), partial(_frame, names=names))
@@ -91,23 +90,3 @@ def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
     return columns.complete(p, raw, spheres, folder)
-
-
-def wall_table(frames: Frames) -> pd.DataFrame:
-    """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS.
-
-    A plate without edges is one triangle in YADE; each triangle of the plate's mesh has the mean of the plate.
-    """
-    p, raw = frames.plan, frames.table("triangles")
-    steps = raw["step"].unique()
-    values, begin, tables = raw.iloc[:, 1:].to_numpy().reshape(len(steps), -1, 3), 0, []
-    for name in p.stress_walls:
-        a, b, c = p.triangles[name].transpose(1, 0, 2)
-        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-        whole, number = is_endless(p, name), np.arange(len(area))
-        found = values[:, begin + number * (not whole)] / (area.sum() if whole else area[:, None])
-        begin += 1 if whole else len(area)
-        each = {"triangle": np.tile(number, len(steps)), "area": np.tile(area, len(steps))}
-        columns = dict(zip(raw.columns[1:], found.reshape(-1, 3).T, strict=True))
-        tables.append(pd.DataFrame({"step": np.repeat(steps, len(area)), "wall": name} | each | columns))
-    return pd.concat(tables, ignore_index=True)

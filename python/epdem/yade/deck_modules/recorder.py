@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from yade import O
-from yade.minieigenHP import Vector3
 from yade.utils import sumForces, sumTorques
 from yade.wrapper import PyRunner
 
@@ -18,65 +17,7 @@ KINDS = ("force", "torque")  # of loads
 GROWTH = ("addedOverlap", "screening", "grownOverlap", "bodyPressure")  # of contacts with compaction
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 LOOK = 100  # most steps between two looks at a condition
-SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, times w, so far
-
-
-class Triangles:
-    """Forces on the triangles of walls and their wear; walls: bodies (facets, or flat boxes of two triangles each) and
-    Finnie's constant [m^2/N] of each, 0: none."""
-
-    def __init__(self, walls: Sequence[tuple[Sequence[int], float]]):
-        self.worn = {k: constant for bodies, constant in walls if constant for k in bodies}
-        shapes = {k: O.bodies[k].shape for bodies, _ in walls for k in bodies}
-        self.flat = {k: np.array(tuple(shape.extents)) for k, shape in shapes.items() if hasattr(shape, "extents")}
-        triangles = ((k, n) for k in shapes for n in range(1 + (k in self.flat)))
-        self.volume = dict.fromkeys(triangles, 0.0)  # worn so far [m^3]
-
-    def wear(self) -> None:
-        """Add what the spheres that approach a triangle wear in this step (Finnie 1960, Wear 3, 87)."""
-        for k, constant in self.worn.items():
-            if not any(O.forces.f(k)):
-                continue
-            wall, normal = O.bodies[k].state, self.normal(k)
-            for i in (i for i in O.bodies[k].intrs() if i.isReal):
-                sphere, away = (i.id2, 1.0) if i.id1 == k else (i.id1, -1.0)
-                arm = i.geom.contactPoint - wall.pos
-                v = O.bodies[sphere].state.vel - wall.vel - wall.angVel.cross(arm)
-                speed = v.norm()
-                if speed < SLOW or away * v.dot(i.geom.normal) > 0.0:
-                    continue
-                sine, cosine = abs(v.dot(normal)) / speed, v.cross(normal).norm() / speed
-                steep = 3.0 * sine > cosine
-                share = cosine**2 / 3.0 if steep else 2.0 * sine * cosine - 3.0 * sine**2
-                force = (i.phys.normalForce + i.phys.shearForce).norm()
-                self.volume[self.at(k, i)] += 2.0 * constant * share * force * speed * O.dt
-
-    def at(self, k: int, contact: Any) -> tuple[int, int]:
-        """Body and number of its triangle at a contact: the triangles of a box meet on its diagonal."""
-        if k not in self.flat:
-            return k, 0
-        state, size = O.bodies[k].state, self.flat[k]
-        u, v = (np.array(tuple(state.ori.conjugate() * (contact.geom.contactPoint - state.pos))) / size)[size > 0.0]
-        return k, int(v > u)
-
-    def normal(self, k: int) -> Any:
-        """Unit normal of a facet or of a flat box."""
-        state, shape = O.bodies[k].state, O.bodies[k].shape
-        return state.ori * (Vector3(AXES[self.flat[k].argmin()]) if k in self.flat else shape.normal)
-
-    def table(self) -> Any:
-        """Normal force [N], tangential force [N], worn volume [m^3] of each triangle, shape (n, 3)."""
-        forces = dict.fromkeys(self.volume, np.zeros(3))
-        for k in {k for k, _ in forces}:
-            for i in (i for i in O.bodies[k].intrs() if i.isReal):
-                on_second = np.array(tuple(i.phys.normalForce + i.phys.shearForce))
-                forces[self.at(k, i)] = forces[self.at(k, i)] + on_second * (1.0 if i.id2 == k else -1.0)
-        force = np.array([*forces.values()])
-        normal = np.array([tuple(self.normal(k)) for k, _ in self.volume])
-        pressed = (force * normal).sum(axis=1)
-        tangential = np.linalg.norm(force - pressed[:, None] * normal, axis=1)
-        return np.column_stack([np.abs(pressed), tangential, [*self.volume.values()]])
 
 
 class Recorder:
@@ -93,7 +34,6 @@ class Recorder:
     ways      (column, body, axis) of walls whose way [m] is in the rows
     moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
     works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
-    triangles of walls, in files triangles.STEP.npy beside the frames; none: no such files
     """
 
     def __init__(
@@ -113,13 +53,12 @@ class Recorder:
         ways: Sequence[tuple[str, int, int]] = (),
         moving: Sequence[int] = (),
         works: Sequence[str] = (),
-        triangles: Sequence[tuple[Sequence[int], float]] = (),
     ):
         self.folder, self.spheres, self.law, self.low, self.high = folder, spheres, law, low, high
         self.every, self.frames, self.spins, self.tables = every, frames, spins, tables
         self.gravity = np.array([0.0, 0.0, fall])
         self.ways = [(column, k, axis, O.bodies[k].state.pos[axis]) for column, k, axis in ways]
-        self.loads, self.moving, self.works, self.triangles = loads, moving, works, Triangles(triangles)
+        self.loads, self.moving, self.works = loads, moving, works
         if works:
             O.trackEnergy = True
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
@@ -251,8 +190,6 @@ class Recorder:
     def _record(self) -> None:
         if self.means:
             self._sums, self._samples = self._sums + self.on_walls(), self._samples + 1
-        if O.iter > 0:
-            self.triangles.wear()
         if O.iter % self.every == 0:
             self.spheres.remove_outside(self.low, self.high)
             self.row()
@@ -379,8 +316,6 @@ class Recorder:
         if "frictionWork" in self.works:
             columns.append(self.friction_energy())
         np.save(self.folder / f"particles.{O.iter}.npy", np.column_stack(columns)[self.shown()])
-        if self.triangles.volume:
-            np.save(self.folder / f"triangles.{O.iter}.npy", self.triangles.table())
 
     def friction_energy(self) -> Any:
         """Elastic energy of friction of each sphere [J]: half of a contact with another one, all of it at a wall."""
