@@ -6,7 +6,7 @@ import pytest
 from scene_runs import run, write_case
 from stored_runs import CASES
 
-from engines.hosts import LAMMPS, LIGGGHTS
+from engines.hosts import CLASSES, LAMMPS, LIGGGHTS
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
@@ -26,7 +26,7 @@ def tablet(**changes):
     return data | changes
 
 
-@pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS])
+@pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS, CLASSES])
 def test_a_tablet_is_pressed_and_broken(host, tmp_path):
     """Energies by two routes; no pull is above strength times area, and each pull is its spring's.
 
