@@ -215,12 +215,7 @@ class Stop:
     missing: str = ""
     left: str = ""
     force: str = ""
-    lag: ClassVar[int] = LAG  # steps within which the share follows
-
-    @property
-    def wanted(self) -> str:
-        """Formula of the share that walls come to have, of x, as `kernels/wall_slowing.hpp`."""
-        return "max(min(x, 1.0), max(0.1 * min(x, 0.0), -0.1))"
+    lag: ClassVar[int] = LAG  # steps within which the share of their speed follows
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:

@@ -78,7 +78,6 @@ class Recorder:
         self._left: Callable[[], float] | None = None
         self._force: Callable[[dict[str, float]], float] | None = None
         self._full: list[Any] | None = None  # velocities of walls that slow
-        self._wanted: Callable[[float], float] = float
         self._lag, self._share = 1, 1.0
         self._held, self._value = -1, 0.0  # step at which the condition held, what it held at
         self._other, self._bearing = 0.0, 0.0
@@ -102,7 +101,6 @@ class Recorder:
         left: Callable[[], float] | None = None,
         force: Callable[[dict[str, float]], float] | None = None,
         missing: Callable[[dict[str, float]], float] | None = None,
-        wanted: Callable[[float], float] = float,
         lag: int = 1,
         limit: float = 0.0,
         after: int = 0,
@@ -112,9 +110,8 @@ class Recorder:
         is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
         that rest from then on, where `look` looks at the condition, without it each row does; left: steps to the height
         that is awaited, force: on the punch there; missing: force over that at which these bodies slow, without it they
-        do not; wanted: the share of their speed that they come to have within `lag` steps; limit: of the value, near
-        which looks are frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame
-        and a table.
+        do not; lag: steps within which the share of their speed follows it; limit: of the value, near which looks are
+        frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
@@ -123,7 +120,7 @@ class Recorder:
         self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
         self._opposite, self._stops, self._limit, self._held = opposite, stops, limit, -1
         self._missing, self._full, self._left, self._force = missing, None, left, force
-        self._wanted, self._lag, self._share = wanted, lag, 1.0
+        self._lag, self._share = lag, 1.0
         if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
@@ -220,7 +217,8 @@ class Recorder:
         if self._missing:
             if O.iter % LOOK == 0:
                 self._look(row)
-            self._share += (self._wanted(self._missing(row)) - self._share) / self._lag
+            left = self._missing(row)  # the share as in kernels/wall_slowing.hpp
+            self._share += (max(min(left, 1.0), max(0.1 * min(left, 0.0), -0.1)) - self._share) / self._lag
             self._slow(self._share)
             return 1
         self._look(row)
