@@ -5,17 +5,16 @@ import errno
 import os
 import re
 import shutil
-import sys
 import time
 from pathlib import Path
 
 import pytest
 from calls import CASES, call, quick_figures
-from parts_cases import parts
-from scene_runs import write_case
 
 from epdem.base.files import atomic
 from epdem.verification import stability
+from scenes.parts_cases import parts
+from scenes.scene_runs import write_case
 
 WRITERS = {  # words of a command that writes, and a file of the user's in its way
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
@@ -96,8 +95,6 @@ def test_a_full_disk_is_said_with_its_free_bytes_though_the_folder_has_gone(tmp_
     assert done.code == 2 and done.err.startswith("epdem: out/law/in.impact: No space left on device (")
     assert "bytes are free); choose another folder by --out" in done.err
 
-
-sys.path.append(str(Path(__file__).parents[1] / "scenes"))
 
 SET = ("--set", "impact.body.radius=1 mm,2 mm")
 READERS = {

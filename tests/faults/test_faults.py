@@ -38,6 +38,7 @@ def test_every_planted_fault_has_its_own_name_and_a_text_and_a_test_that_exist()
         assert f"def {name}(" in (ROOT / "tests" / file).read_text(), fault.test
         for text in (fault.old, fault.new) if fault not in FAULTS else ():  # of expressions, all in one build
             assert all(text.count(a) == text.count(b) for a, b in ("()", "[]", "{}")), f"{fault.name}: {text}"
+            assert not text.startswith(("const ", "if ", "return ")), f"{fault.name}: {text}"
 
 
 @pytest.mark.parametrize(

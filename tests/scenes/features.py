@@ -89,6 +89,7 @@ LAWS = {
     "cavity": {"name": "cavity"},
     "cavity, finite strain": {"name": "cavity", "finite_strain": True},
     "cavity, compaction": {"name": "cavity", "finite_strain": True, "compaction": True},
+    "cavity, bonds": {"name": "cavity", "compaction": True},
     "johnson, one strength": {"name": "johnson", "yield_pressure": "0.2 MPa"},
     "meyer": {"name": "meyer", "hardening_exponent": 0.3},
     "jkr": {"name": "jkr", "work_of_adhesion": "0.02 J/m^2"},
@@ -285,6 +286,8 @@ def case_of(chosen: dict[str, str]) -> dict:
     data = CASE | {"materials": CASE["materials"] | {"glass": glass, "rubber": RUBBER}, "law": LAWS[chosen["law"]]}
     data |= {"scene": scene | {"phase": [FIRST | first, SECOND | second]}, "output": OUTPUTS[chosen["output"]]}
     data |= {"numerics": NUMERICS[chosen["numerics"]], "contact": CONTACTS[chosen["contact"]]}
+    if chosen["law"] == "cavity, bonds":
+        data["contact"] = data["contact"] | {"bond_strength": "0.1 MPa"}
     dashpot = DASHPOTS[chosen["dashpot"]]
     if "viscous" in dashpot:
         data["viscous"] = dashpot["viscous"]

@@ -54,6 +54,15 @@ SMALL = {
         "speed": "4 m/s",
         "unload_speed": "4 m/s",
     },
+    "brazilian": {
+        "diameter": "0.5 mm",
+        "height": "0.8 mm",
+        "thickness": "0.24 mm",
+        "count": 60,
+        "speed": "4 m/s",
+        "unload_speed": "2 m/s",
+        "test_speed": "2 m/s",
+    },
     "peening": {"count": 40, "width": "4 mm", "duration": "0.5 ms"},
     "parts": {},
 }

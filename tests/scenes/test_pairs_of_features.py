@@ -48,6 +48,7 @@ def with_key(key):
 
 
 ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
+COMPACTION = {"cavity, compaction", "cavity, bonds"}
 COHESION = {"cohesion", "cohesion with friction"}
 NOT_LINEAR = {
     "phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves", "wall moves, then tilts"}
@@ -65,7 +66,8 @@ EXCLUDED = [
     ({"phases": {"wall presses"}, "rows": {"rows of walls"}}, "rows do not know its place"),
     ({"law": {"johnson, one strength"}, "strength": {"hardness", "yield ratio"}}, "each the strength; keep one"),
     (ADHESIVE | {"contact": COHESION}, "has its attraction already"),
-    ({"law": {"cavity, compaction"}, "contact": COHESION}, "contacts with law.compaction have no cohesion"),
+    ({"law": COMPACTION, "contact": COHESION}, "contacts with law.compaction have no cohesion"),
+    ({"law": {"cavity, bonds"}, "contact": {"partial slip", "partial slip 2"}}, "'history'"),
     (ADHESIVE | {"contact": {"partial slip", "partial slip 2"}}, "laws with adhesion have 'history' only"),
     (ADHESIVE | {"measure": {"speeds of impacts"}}, "impact speeds follow from contacts without adhesion"),
     (FRAMELESS | {"measure": set(SLOTS["measure"]) - OF_ROWS}, "taken from frames"),
