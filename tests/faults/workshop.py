@@ -18,7 +18,7 @@ def copy_of_project(folder: Path) -> Path:
     """A copy of the project; the compiled parts that it uses are the installed ones until it has its own."""
     for name in ("cpp_contact", "python", "templates", "tests", "cases", "data", "docs"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.png"))
-    for name in ("pyproject.toml", "CMakeLists.txt", "ARCHITECTURE.md"):
+    for name in ("pyproject.toml", "CMakeLists.txt", "ARCHITECTURE.md", "README.md"):
         shutil.copy(ROOT / name, folder)
     return folder
 
