@@ -147,6 +147,7 @@ def stopped_run(path: Path, out: Path, steps: int | None = None, engine: str = "
 EMPTY = {
     "impactor_bowl": {f"tube_{what}_{axis}" for what in ("force", "torque") for axis in "xyz"},
     "hopper_stl": {f"tray_{what}_{axis}" for what in ("force", "torque") for axis in "xyz"},
+    "tablet_strength": {"right_force_y", "right_force_z", "right_torque_x"},  # jaws without friction
     "sieve_cylinder": {"floor_force_x", "floor_force_y", "cylinder_force_z"},
 }
 
