@@ -71,14 +71,14 @@ def compare(found: pd.DataFrame) -> pd.DataFrame:
     """The means of the hosts, from rows of scene, quantity, host and value."""
     table = []
     for (scene, quantity), values in found.groupby(["scene", "quantity"], sort=False):
-        theirs, ours = (values["value"][values["host"] == host] for host in HOSTS)
-        error = math.sqrt(ours.sem() ** 2 + theirs.sem() ** 2)
-        row = {"scene": scene, "quantity": quantity, "unit": UNITS[quantity], "packings": len(ours)}
-        for host, x in zip(HOSTS, (theirs, ours), strict=True):
+        liggghts, lammps = (values["value"][values["host"] == host] for host in HOSTS)
+        error = math.sqrt(lammps.sem() ** 2 + liggghts.sem() ** 2)
+        row = {"scene": scene, "quantity": quantity, "unit": UNITS[quantity], "packings": len(lammps)}
+        for host, x in zip(HOSTS, (liggghts, lammps), strict=True):
             row |= {host: f"{x.mean():.4g}", f"{host}_scatter": f"{x.std():.2g}"}
         row |= {
-            "ratio": f"{ours.mean() / theirs.mean():.3f}",
-            "sigmas": f"{(ours.mean() - theirs.mean()) / error:+.1f}",
+            "ratio": f"{lammps.mean() / liggghts.mean():.3f}",
+            "sigmas": f"{(lammps.mean() - liggghts.mean()) / error:+.1f}",
         }
         table.append(row)
     return pd.DataFrame(table)

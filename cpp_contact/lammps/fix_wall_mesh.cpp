@@ -173,6 +173,7 @@ void FixWallMesh::begin() {
 
 void FixWallMesh::note_forces(const kernels::Block& b, int n) {
   const auto part = [](const auto& lines, int k) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
+  if (!sums_ && worn_.empty()) return;
   for (int k = 0; k < n; ++k) {
     const int t = mesh_->own(b.j[k]);
     const Vec<double> force = part(b.force, k);
@@ -255,6 +256,7 @@ ComputeTriangles::ComputeTriangles(LAMMPS* lmp, int count, char** word)
 void ComputeTriangles::init() {
   wall_ = dynamic_cast<FixWallMesh*>(modify->get_fix_by_id(name_));
   if (!wall_) error->all(FLERR, "compute {}: there is no fix wall/ep mesh {}", style_name, name_);
+  wall_->sum_forces();
 }
 
 void ComputeTriangles::compute_local() {

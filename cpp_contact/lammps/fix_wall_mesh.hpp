@@ -22,6 +22,8 @@ class FixWallMesh : public FixWallRegion {
   ~FixWallMesh() override;
 
   static constexpr int table_columns = 5;
+  /// From the next step on the forces of the triangles are summed.
+  void sum_forces() { sums_ = true; }
   /// On rank 0 a row of each triangle: number, area, normal and shear stress in this step, depth worn so far.
   /// Collective.
   std::vector<double> table() const;
@@ -45,6 +47,7 @@ class FixWallMesh : public FixWallRegion {
   std::vector<std::vector<int>> near_;  // by atom: triangles that it can touch until then
   std::vector<int> listed_;             // atoms with triangles in near_
   double wear_ = 0.0;                   // constant of Finnie's law
+  bool sums_ = false;                   // a table is requested
   std::vector<int> pressed_;            // triangles with a force in this step
   std::vector<double> force_, worn_;    // of each triangle: three components, volume; worn_ is empty without wear
 };

@@ -16,11 +16,11 @@
 // 4. Pressure. What growth adds is not indented by its counterpart: it is the flowing body laid against it, and carries
 //    2/3 Y + P, P: mean pressure of the body, sum F (R - d)/(3 V), the largest so far. Of the force of the law, what
 //    growth adds to it by the hardness gives way to the area that growth adds times 2/3 Y + P, in the share m.
-// The law is that of the overlap alpha + v, v = u + q.
 // 5. Bond, where a pair has a strength. Two spheres that have yielded hold together by the circle of radius a_m of
 //    their largest overlap: below the overlap alpha_p at which the law has no force they pull as a punch of this
 //    circle, 2 (E*/G) a_m (alpha_p - alpha). The bond breaks at strength times pi a_m^2, for as long as the contact
 //    lasts, or ends with the contact.
+// The law is that of the overlap alpha + v, v = u + q.
 #pragma once
 
 #include "law.hpp"
