@@ -14,9 +14,11 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
 from epdem.base.files import running
 from epdem.case.impact import load
+from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
@@ -44,6 +46,14 @@ def case(tmp_path):
 def sweep(case: Path, out: Path, settings=RADII, jobs=2, **options):
     words = {k: options.pop(k) for k in ("engines", "laws", "ranks", "latin_hypercube", "seed") if k in options}
     return run.run(run.plan(case, settings, **({"engines": ["embedded"]} | words)), out, jobs=jobs, **options)
+
+
+def said_by(*words: str) -> dict:
+    """The JSON document of a command, called in this process."""
+    done = CliRunner().invoke(app, [*words, "--json"])
+    if done.exception and not isinstance(done.exception, SystemExit):
+        raise done.exception
+    return json.loads(done.stdout)
 
 
 def finished(out: Path) -> dict[str, bytes]:
@@ -111,22 +121,21 @@ def test_what_is_wrong_is_refused_before_anything_is_written(settings, words, ca
 
 @pytest.mark.liggghts
 def test_a_dry_run_refuses_the_points_that_cannot_run(case, tmp_path):
-    def dry(case, *settings, engine="embedded"):
+    def dry(case, *settings):
         sets = [word for setting in settings for word in ("--set", setting)]
-        done = subprocess.run([EPDEM, "sweep", case, "-e", engine, *sets, "--dry-run"], capture_output=True, text=True)
-        assert done.returncode == 2 and "case.toml" not in done.stderr
-        return done.stderr
+        refused = CliRunner().invoke(app, ["sweep", str(case), "-e", "liggghts", *sets, "--dry-run"]).exception
+        assert isinstance(refused, CaseError) and "case.toml" not in str(refused)
+        return str(refused)
 
-    slow = dry(case, "impact.body.radius=1 mm,100 m", 'impact.speeds=["1e-12 m/s"]', engine="liggghts")
+    slow = dry(case, "impact.body.radius=1 mm,100 m", 'impact.speeds=["1e-12 m/s"]')
     assert "point 1 (impact.body.radius = 1 mm, impact.speeds" in slow and "not representable by positions" in slow
     press = tmp_path / "press.toml"
     text = (ROOT / "cases/compaction_powder.toml").read_text()
     law = '[law]\nname = "cavity"\ncompaction = true\n'
     press.write_text(re.sub(r"\[law\]\n(?:.+\n)+", law, text))
-    said = dry(press, "law.name=cavity,meyer", engine="liggghts")
+    said = dry(press, "law.name=cavity,meyer")
     assert "point 2 (law.name = meyer): law.compaction: law meyer has none; take law.name = 'cavity'" in said
-    height = dry(press, "scene.height=1 mm,0.1 um", engine="liggghts")
-    assert height.startswith("epdem: point 2 (scene.height = 0.1 um): ")
+    assert dry(press, "scene.height=1 mm,0.1 um").startswith("point 2 (scene.height = 0.1 um): ")
 
 
 @pytest.mark.liggghts
@@ -236,23 +245,22 @@ def test_a_failure_for_want_of_space_is_no_result(case, tmp_path, monkeypatch):
     assert not finished(tmp_path / "out")
 
 
-def command(case: Path, out: Path, *more: str) -> list[str]:
-    ranges = ["--set", "impact.body.radius=1 mm..10 mm:10", "--set", "law.yield_pressure=1 GPa..3 GPa:6"]
-    return [EPDEM, "sweep", str(case), "-e", "embedded", *ranges, "-o", str(out), "-j", "2", *more]
+RANGES = {"impact.body.radius": "1 mm..10 mm:6", "law.yield_pressure": "1 GPa..2.5 GPa:4"}
 
 
-def wait_for(out: Path, count: int, process: subprocess.Popen) -> None:
-    end = time.monotonic() + 120
-    while process.poll() is None and time.monotonic() < end and len(finished(out)) < count:
-        time.sleep(0.005)
+def command(case: Path, out: Path) -> list[str]:
+    ranges = [word for key, text in RANGES.items() for word in ("--set", f"{key}={text}")]
+    return ["sweep", str(case), "-e", "embedded", *ranges, "-o", str(out), "-j", "2"]
 
 
 @pytest.mark.slow
-def test_60_points_killed_three_times_give_the_same_table_and_no_finished_point_runs_twice(case, tmp_path):
+def test_24_points_killed_three_times_give_the_same_table_and_no_finished_point_runs_twice(case, tmp_path):
     out, chance, before = tmp_path / "out", random.Random(5), {}
     for kill in range(3):
-        process = subprocess.Popen(command(case, out), stdout=subprocess.DEVNULL, start_new_session=True)
-        wait_for(out, len(before) + chance.randint(2, 14), process)
+        process = subprocess.Popen([EPDEM, *command(case, out)], stdout=subprocess.DEVNULL, start_new_session=True)
+        count, end = len(before) + chance.randint(2, 5), time.monotonic() + 120
+        while process.poll() is None and time.monotonic() < end and len(finished(out)) < count:
+            time.sleep(0.005)
         assert process.poll() is None
         process.send_signal(signal.SIGKILL if kill % 2 == 0 else signal.SIGINT)
         process.wait()
@@ -263,20 +271,22 @@ def test_60_points_killed_three_times_give_the_same_table_and_no_finished_point_
         now = finished(out)
         assert {k: v for k, v in now.items() if k in before} == before and len(now) > len(before)
         before = now
-        assert slurm.status(out)["waiting"] == 60 - len(now)
-    done = json.loads(subprocess.check_output(command(case, out, "--json")))
-    assert done["ran"] == 60 - len(before) and done["done"] == 60
+        assert slurm.status(out)["waiting"] == 24 - len(now)
+    done = sweep(case, out, RANGES)
+    assert done.ran == 24 - len(before) and done.count("done") == 24
     assert {k: v for k, v in finished(out).items() if k in before} == before
-    subprocess.check_call(command(case, tmp_path / "whole"), stdout=subprocess.DEVNULL)
+    sweep(case, tmp_path / "whole", RANGES)
     assert (out / "sweep.csv").read_bytes() == (tmp_path / "whole/sweep.csv").read_bytes()
 
 
 @pytest.mark.slow
 def test_calls_for_some_points_work_side_by_side_and_a_whole_call_finds_them_done(case, tmp_path):
     """Three at once in a new folder, as tasks of an array: each says by its exit code how its points ended."""
-    out, words = tmp_path / "out", ["--set", "impact.body.radius=1 mm,2 mm,4 mm,5 mm", "--json"]
-    whole = [EPDEM, "sweep", str(case), "-e", "embedded", "-o", str(out), *words]
-    calls = {only: subprocess.Popen([*whole, "--only", only], stdout=subprocess.PIPE) for only in ("2", "3-4,3", "1")}
+    out, radii = tmp_path / "out", "1 mm,2 mm,4 mm,5 mm"
+    words = ["sweep", str(case), "-e", "embedded", "-o", str(out), "--set", f"impact.body.radius={radii}", "--json"]
+    calls = {
+        only: subprocess.Popen([EPDEM, *words, "--only", only], stdout=subprocess.PIPE) for only in ("2", "3-4,3", "1")
+    }
     said = {only: json.loads(process.communicate(timeout=120)[0]) for only, process in calls.items()}
     assert {only: (x["ran"], x["done"], x["failed"]) for only, x in said.items()} == {
         "1": (1, 1, 0),
@@ -285,9 +295,9 @@ def test_calls_for_some_points_work_side_by_side_and_a_whole_call_finds_them_don
     }
     assert all(process.returncode == 0 for process in calls.values()) and not (out / "sweep.csv").exists()
     before = finished(out)
-    assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--table", "--json"]))["done"] == 4
-    assert json.loads(subprocess.check_output(whole))["ran"] == 0 and finished(out) == before
-    alone = sweep(case, tmp_path / "alone", {"impact.body.radius": "1 mm,2 mm,4 mm,5 mm"})
+    assert said_by("status", str(out), "--table")["done"] == 4
+    assert said_by(*words)["ran"] == 0 and finished(out) == before
+    alone = sweep(case, tmp_path / "alone", {"impact.body.radius": radii})
     assert (out / "sweep.csv").read_bytes() == (tmp_path / "alone/sweep.csv").read_bytes() and alone.ran == 4
 
 
@@ -322,13 +332,13 @@ def test_points_of_a_call_are_those_of_the_sweep(case, tmp_path):
 
 def test_the_commands_say_what_they_do(case, tmp_path):
     out = tmp_path / "out"
-    dry = json.loads(subprocess.check_output(command(case, out, "--dry-run", "--json")))
-    assert len(dry["points"]) == 60 and not out.exists()
-    assert dry["points"][1] == {"impact.body.radius": "1 mm", "law.yield_pressure": "1.4 GPa"}
+    dry = said_by(*command(case, out), "--dry-run")
+    assert len(dry["points"]) == 24 and not out.exists()
+    assert dry["points"][6] == {"impact.body.radius": "2.8 mm", "law.yield_pressure": "2 GPa"}
     sweep(case, out)
-    assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["done"] == 3
-    asked = subprocess.run([EPDEM, "status", str(tmp_path)], capture_output=True, text=True)
-    assert asked.returncode == 2 and "not a folder of a sweep" in asked.stderr
+    assert said_by("status", str(out))["done"] == 3
+    with pytest.raises(CaseError, match="not a folder of a sweep"):
+        said_by("status", str(tmp_path))
 
 
 @pytest.mark.liggghts
