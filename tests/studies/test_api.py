@@ -19,6 +19,7 @@ import epdem
 from epdem import Case, Scene, SceneRun, calibrate, cite, deck, predict, read, run, sweep, theory
 from epdem.cli.main import app
 from epdem.errors import CaseError
+from epdem.report.pages import write_page
 from epdem.scenes.tables import results as scene_results
 from epdem.theory.indentation import VICKERS
 
@@ -116,6 +117,12 @@ def test_run_and_command_give_the_same(ball, tmp_path):
     for again in (found, other):  # anew at each call
         picture.write_text("no picture")
         assert again.plot() == picture and picture.read_bytes() == drawn  # of a test: empty
+
+
+def test_the_page_of_one_speed_has_one_share_of_the_energy_of_waves(steel, tmp_path):
+    found = run(steel.replace({"impact.speeds": [3.0]}), engines="embedded", out=tmp_path)
+    (share,) = re.findall(r"an estimated (.*?) % of the kinetic", write_page(found.outcome).read_text())
+    assert float(share) > 0
 
 
 def test_a_table_of_a_scene_has_the_units_of_the_columns_of_every_wall():

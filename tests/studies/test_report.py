@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from epdem import api
 from epdem.cli import main
+from epdem.engines.embedded import Embedded
 from epdem.report import chart, page
 from epdem.report.impacts import charts as of_page
 from epdem.studies.sweep.run import SweepOutcome
@@ -134,15 +135,14 @@ def test_the_page_stands_alone_and_says_where_its_numbers_come_from(folder, char
     assert sum(bool(why) for _, why in reasons) > 15 and any("ep/thornton" in line for line, why in reasons if why)
 
 
-def test_page_and_figure_follow_a_changed_tolerance_title_and_source_of_stored_impacts(tmp_path):
+def test_page_and_figure_follow_a_changed_tolerance_title_and_source_of_stored_impacts(tmp_path, monkeypatch):
     """No impact runs again. With 60 steps e_n differs from 8.83 by 1e-3, which a tolerance of 1e-9 does not allow."""
     case, text = tmp_path / "steel.toml", CASE.read_text().replace("= 400", "= 60").replace("e_n = 1e-4", "e_n = 1e-2")
     case.write_text(text)
-    page = run(tmp_path, "-e", "embedded")
-    picture, stored = tmp_path / "out/e_n.png", (tmp_path / "out/results.h5").stat().st_mtime_ns
+    assert "All checks hold" in run(tmp_path, "-e", "embedded")
+    picture = tmp_path / "out/e_n.png"
     seen = picture.read_bytes()
-    assert "All checks hold" in page and run(tmp_path, "-e", "embedded") == page
-    assert (tmp_path / "out/results.h5").stat().st_mtime_ns == stored and picture.read_bytes() == seen
+    monkeypatch.setattr(Embedded, "run", lambda *words, **named: pytest.fail("it ran again"))
     for old, new, said in (
         ("e_n = 1e-2", "e_n = 1e-9", "A check fails"),
         (f'"{TITLE}"', '"Another title"', "<h1>Another title</h1>"),
@@ -154,9 +154,6 @@ def test_page_and_figure_follow_a_changed_tolerance_title_and_source_of_stored_i
         now = picture.read_bytes()
         assert (now == seen) == (old == "source = ")
         seen = now
-    case.write_text(re.sub("speeds = .*", 'speeds = ["3 m/s"]', text))
-    (share,) = re.findall(r"an estimated (.*?) % of the kinetic", run(tmp_path, "-e", "embedded", code=1))
-    assert float(share) > 0  # one speed has one share
 
 
 def test_a_figure_is_drawn_once_for_page_and_files_and_anew_at_each_call(tmp_path, monkeypatch):
@@ -262,7 +259,7 @@ def test_a_long_table_is_cut_and_says_so():
 def test_figures_need_no_backend(tmp_path, monkeypatch):
     """matplotlib's import fails if MPLBACKEND names an unknown one; a figure in a file is drawn all the same."""
     monkeypatch.setenv("MPLBACKEND", "nonsense")
-    (tmp_path / "steel.toml").write_text(CASE.read_text())
+    (tmp_path / "steel.toml").write_text(CASE.read_text().replace("count = 32", "count = 3"))
     words = [Path(sys.executable).with_name("epdem"), "run", "steel.toml", "-o", "out", "-e", "embedded"]
     subprocess.run(words, cwd=tmp_path, check=True, capture_output=True)
     assert (tmp_path / "out/e_n.png").stat().st_size > 10_000
