@@ -2,6 +2,7 @@
 """Friction, rolling, cohesion, adhesion and energies of single contacts, each in every host."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -208,6 +209,45 @@ def test_shear_loading_and_back_loses_energy_where_one_spring_makes_it(host, tan
     spring = 0.5 * 8 * G_STAR * np.sqrt(R * d) * shear**2
     assert low < work[n:].sum() / spring < high
     assert np.abs(f[:, 0]).max() < 0.5 * mu * f[n, 1]  # nothing slides as a whole
+
+
+FOOT = [(-0.08, 0, -0.02), (-0.11, 0.02, -0.02), (-0.11, -0.02, -0.02), (-0.08, 0, -0.02)]
+TOPS = np.array(
+    [  # a plate of two triangles, a ridge between two slopes, a tip of three, all up to z = 0
+        *tiles((-0.05, 0.05), (-0.05, 0.05)),
+        [(0.1, -0.05, 0), (0.1, 0.05, 0), (0.12, 0, -0.02)],
+        [(0.1, 0.05, 0), (0.1, -0.05, 0), (0.08, 0, -0.02)],
+        *([(-0.1, 0, 0), *edge] for edge in pairwise(FOOT)),
+    ]
+)
+PLACES = {
+    "face": (0.02, -0.01),
+    "common edge": (0.012, 0.012),
+    "beside it": (-0.02, -0.02 + 1e-12),
+    "edge": (0.05, 0.017),
+    "corner of two": (-0.05, -0.05),
+    "corner of one": (0.05, -0.05),
+    "ridge": (0.1, 0.01),
+    "tip": (-0.1, 0.0),
+}
+
+
+@pytest.mark.parametrize(("host", "law"), on([LIGGGHTS, LAMMPS], ["thornton", "cavity", "jkr"]))
+def test_face_edge_and_corner_give_the_rebound_of_a_plane(host, law, tmp_path):
+    """At the origin, and moved along all axes; in LAMMPS also of triangles that are flipped or occur twice."""
+    R, v = 0.01, 1.0
+    soft = {"E": 1e8, "workOfAdhesion": 0.5} if law == "jkr" else {}
+    more = {"radius": R, "v": (0, 0, -v), "plane": 0, "dt": 5e-7 if soft else 1.5e-8, "steps": 4000, "every": 4000}
+    over = Scene(law, [STEEL | soft], [(*at, 1.00001 * R) for at in PLACES.values()], **more)
+    (expected,) = {*frames(host, tmp_path / "plane", over)[-1, :, 5].round(9)}
+    assert expected > 0.1
+    walls = {f"by {way} m": (np.array(over.x) + way, TOPS + way) for way in (0.0, 1e-4, 1.0)}
+    if host == "lammps":
+        walls |= {"flipped": (over.x, TOPS[:, ::-1]), "twice": (over.x, np.concatenate([TOPS, TOPS[:, ::-1]]))}
+    for name, (x, floor) in walls.items():
+        found = frames(host, tmp_path / name.replace(" ", "_"), replace(over, x=x, floor=floor))[-1, :, VELOCITY]
+        off = np.abs(found - (0, 0, expected)).max(axis=1)
+        assert off.max() <= 1e-6 * expected, (name, dict(zip(PLACES, off, strict=True)))
 
 
 OVER_TRIANGLES = pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 """Walls of triangles in LAMMPS: one contact over a face, an edge or a corner, and the motion beside planes and regions,
 which the plugin computes without triangles."""
 
-import itertools
 import struct
 
 import numpy as np
@@ -18,59 +17,6 @@ R = 0.01  # [m]
 FRICTION = "thornton 1e8 0.3 4e5 tangential history 0.3"
 HARD = FRICTION.replace("4e5", "8e6")
 END = "thermo_style custom step ke f_w[1] f_w[2] f_w[3] f_w[5]\nthermo_modify format float %.17g\n"
-
-
-FOOT = [(-0.08, 0, -0.02), (-0.11, 0.02, -0.02), (-0.11, -0.02, -0.02), (-0.08, 0, -0.02)]
-TOPS = [  # a plate of two triangles, a ridge between two slopes, a tip of three, all up to z = 0
-    *tiles((-0.05, 0.05), (-0.05, 0.05), 1, 1),
-    [(0.1, -0.05, 0), (0.1, 0.05, 0), (0.12, 0, -0.02)],
-    [(0.1, 0.05, 0), (0.1, -0.05, 0), (0.08, 0, -0.02)],
-    *([(-0.1, 0, 0), *edge] for edge in itertools.pairwise(FOOT)),
-]
-PLACES = {
-    "face": (0.02, -0.01),
-    "common edge": (0.012, 0.012),
-    "beside it": (-0.02, -0.02 + 1e-12),
-    "edge": (0.05, 0.017),
-    "corner of two": (-0.05, -0.05),
-    "corner of one": (0.05, -0.05),
-    "ridge": (0.1, 0.01),
-    "tip": (-0.1, 0.0),
-}
-LAWS = {"thornton": "208e9 0.3 2.8e9", "cavity": "208e9 0.3 1e9", "jkr": "1e8 0.3 0.5"}
-DURATION = {"thornton": 6e-5, "cavity": 6e-5, "jkr": 2e-3}  # [s]
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("shift", [0.0, 1e-4, 1.0])
-def test_face_edge_and_corner_give_the_rebound_of_a_plane(law, shift, tmp_path):
-    """Spheres that fall onto the wall with 1 m/s."""
-    words = f"{law} {LAWS[law]}"
-    (tmp_path / "tops.stl").write_text(stl_text("tops", np.array(TOPS) + shift))
-    head = spheres(*((x + shift, y + shift, 1.00001 * R + shift) for x, y in PLACES.values()), pair=words)
-    head = head.replace("-0.1 0.1 -0.1 0.1 -0.1 0.1", "-2 2 -2 2 -2 2")
-    dt = DURATION[law] / 4000
-    walk = f"velocity all set 0 0 -1\nfix motion all nve/sphere\ntimestep {dt}\nrun 4000\n{DUMP}"
-    _, plane = run(f"{head}fix w all wall/ep zplane {shift} NULL {words}\n{walk}", tmp_path / "plane")
-    _, mesh = run(f"{head}fix w all wall/ep mesh tops.stl {words}\n{walk}", tmp_path)
-    assert (plane[:, 6] > 0.1).all()
-    for name, (vx, vy, vz), expected in zip(PLACES, mesh[:, 4:7], plane[:, 6], strict=True):
-        assert vz == pytest.approx(expected, rel=1e-6), name
-        assert max(abs(vx), abs(vy)) <= 1e-6 * expected, name
-
-
-def test_a_triangle_that_is_flipped_or_occurs_twice_acts_as_one(tmp_path):
-    words, found = "thornton 208e9 0.3 2.8e9", []
-    tops = np.array(TOPS)
-    for name, wall in (("once", tops), ("flipped", tops[:, ::-1]), ("doubled", np.concatenate([tops, tops[::-1]]))):
-        (tmp_path / f"{name}.stl").write_text(stl_text("tops", wall))
-        head = spheres(*((x, y, 1.00001 * R) for x, y in PLACES.values()), pair=words)
-        head = head.replace("-0.1 0.1 -0.1 0.1 -0.1 0.1", "-2 2 -2 2 -2 2")
-        walk = f"velocity all set 0 0 -1\nfix motion all nve/sphere\ntimestep 1.5e-8\nrun 4000\n{DUMP}"
-        found.append(run(f"{head}fix w all wall/ep mesh {name}.stl {words}\n{walk}", tmp_path)[1])
-    assert (found[0][:, 6] > 0.1).all()
-    for rows in found[1:]:
-        assert np.abs(rows[:, 4:7] - found[0][:, 4:7]).max() <= 1e-9 * found[0][0, 6]
 
 
 def rebounds(wall, start, velocity, steps, law=FRICTION, more=""):

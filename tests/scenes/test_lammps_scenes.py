@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bulk scenes in LAMMPS: the way of the spheres in LIGGGHTS, the energy that moving walls bring, what is refused."""
 
-import itertools
 import subprocess
 import sys
 
@@ -161,56 +160,6 @@ def test_a_sphere_takes_the_way_of_liggghts_in_a_bowl_of_triangles_that_shakes(r
     assert np.abs(theirs.rows["bowl_force_z"]).max() > 0
     assert_alike(ours.rows, theirs.rows, theirs.rows, 1e-6)
     assert_alike(ours.particles, theirs.particles, ("x", "z", "vy", "omega_x"), 1e-6)
-
-
-FOOT = [(-0.012, 0.010, -0.008), (-0.004, 0.010, -0.008), (-0.008, 0.016, -0.008)]
-TOPS = [  # two triangles, a ridge between two slopes, a tip of three, a convex fold of 10 degrees, all up to z = 0
-    [(-0.02, -0.02, 0), (0, -0.02, 0), (0, 0, 0)],
-    [(-0.02, -0.02, 0), (0, 0, 0), (-0.02, 0, 0)],
-    [(0.01, -0.01, 0), (0.01, 0.01, 0), (0.018, 0, -0.01)],
-    [(0.01, 0.01, 0), (0.01, -0.01, 0), (0.002, 0, -0.01)],
-    *([(-0.008, 0.012, 0), FOOT[k], FOOT[(k + 1) % 3]] for k in range(3)),
-    *([(0.022, -0.01, 0), *two] for two in itertools.pairwise([(0.03, -0.01, 0), (0.03, 0.02, 0), (0.022, 0.02, 0)])),
-    [(0.03, -0.01, 0), (0.038, 0, -0.00141), (0.03, 0.02, 0)],
-]
-PLACES = {  # of a sphere above them [m]
-    "face": (-0.012, -0.006),
-    "common edge": (-0.01, -0.01),
-    "beside it": (-0.005, -0.005 + 1e-12),
-    "edge": (0.0, -0.012),
-    "corner of one": (0.0, -0.02),
-    "corner of two": (-0.02, -0.02),
-    "ridge": (0.01, 0.002),
-    "tip": (-0.008, 0.012),
-    "fold": (0.03, 0.015),
-    **{f"{s} R beside the fold": (0.03 - s * 1.5e-3, 0.004 * k - 0.002) for k, s in enumerate((0.01, 0.1, 0.25))},
-}
-
-
-@needs_lammps
-@pytest.mark.liggghts
-@pytest.mark.parametrize("law", ["thornton", "cavity", "jkr"])
-@pytest.mark.parametrize("shift", [0.0, 1e-4, 1.0])
-def test_a_face_an_edge_and_a_corner_give_one_rebound_in_both_hosts(law, shift, tmp_path):
-    write_stl(tmp_path / "tops.stl", np.array(TOPS) + shift)
-    rows = [f"{x + shift!r},{y + shift!r},{1.501e-3 + shift!r},1.5e-3,glass,0,0,-1" for x, y in PLACES.values()]
-    (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *rows, ""]))
-    data = parts(
-        wall=[{"name": "tops", "kind": "stl", "file": "tops.stl", "material": "steel"}],
-        room={axis: [f"{shift - 0.04!r} m", f"{shift + 0.04!r} m"] for axis in "xyz"},
-        fill=[{"name": "table", "file": "spheres.csv"}],
-        phase=[timed("hit", "1 ms")],
-    )
-    data["numerics"] = {"time_step": "2e-7 s"}
-    data["law"]["name"] = law
-    if law == "jkr":
-        data["materials"] = {name: x | {"surface_energy": "0.5 J/m^2"} for name, x in data["materials"].items()}
-    ends = [last_frame(found.particles) for found in in_hosts(data, tmp_path, "lammps", "liggghts")]
-    expected = ends[1]["vz"].iloc[0]
-    assert expected > 0.1
-    for end in ends:
-        for name, vx, vz in zip(PLACES, end["vx"], end["vz"], strict=True):
-            assert vz == pytest.approx(expected, rel=1e-6) and abs(vx) <= 1e-6 * expected, name
 
 
 @needs_lammps
