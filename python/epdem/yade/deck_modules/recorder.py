@@ -32,7 +32,7 @@ class Recorder:
     tables    steps between two tables contacts.STEP.npy: see `contact_table`; 0: none
     loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
     ways      (column, body, axis) of walls whose way [m] is in the rows
-    moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
+    moving    bodies of each wall that moves: the mean of the power that walls give, wall_power; none: no such column
     works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
     """
 
@@ -51,7 +51,7 @@ class Recorder:
         tables: int = 0,
         loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
         ways: Sequence[tuple[str, int, int]] = (),
-        moving: Sequence[int] = (),
+        moving: Sequence[Sequence[int]] = (),
         works: Sequence[str] = (),
     ):
         self.folder, self.spheres, self.law, self.low, self.high = folder, spheres, law, low, high
@@ -265,11 +265,16 @@ class Recorder:
         values = []
         if self.moving:
             power = 0.0
-            for k in self.moving:
-                s = O.bodies[k].state
-                velocity = s.vel - 0.5 * O.dt * s.angVel.cross(s.vel)  # now; a turn's is the mean of the coming step
-                velocity = 0.5 * (velocity + self._before.get(k, velocity))
-                power -= O.forces.f(k).dot(velocity) + O.forces.t(k).dot(s.angVel)
+            for bodies in self.moving:  # a wall is rigid: sums over its bodies, which YADE makes, are enough
+                s = O.bodies[bodies[0]].state
+                turn = s.angVel
+                velocity = s.vel - 0.5 * O.dt * turn.cross(s.vel)  # now; a turn's is the mean of the coming step
+                if any(turn):
+                    center = s.pos + turn.cross(velocity) / turn.squaredNorm()
+                    power -= sum(w * sumTorques(bodies, axis, center) for w, axis in zip(turn, AXES, strict=True) if w)
+                else:
+                    velocity = 0.5 * (velocity + self._before.get(bodies[0], velocity))
+                    power -= sum(v * sumForces(bodies, axis) for v, axis in zip(velocity, AXES, strict=True) if v)
             values.append(power)
         for _, bodies, origin in self.loads:
             values += [sumForces(bodies, axis) for axis in AXES]
