@@ -22,8 +22,9 @@ from features import AMOUNTS, CHOICES, DENSITY, MIXTURES, SLOTS, case_of, files
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
 from other_routes import assert_coulomb, assert_forces, assert_frames, porosity
+from parts_cases import mm
 from pydantic import BaseModel
-from scene_runs import restart_steps, run, write_case, write_deck
+from scene_runs import assert_alike, restart_steps, run, write_case, write_deck
 
 from epdem.case.keys import keys_of
 from epdem.case.scene import SceneCase, load, parse
@@ -392,31 +393,55 @@ ALIKE = SLOTS | {
     "measure": {"none"},
     "output": {"frames"},
 }
+NEAR = {"lid": {"center": mm(0, 0, -0.7)}, "left": {"at": "-3.4 mm"}}  # next to the heap
+BETWEEN = PLAIN | {"walls": "planes across x and y", "phases": "wall moves"}
 
 
 @pytest.mark.lammps
 @pytest.mark.liggghts
 @tries(3, phases=[Phase.explicit, Phase.generate])
 @example(chosen=PLAIN | {"dashpot": "dashpot", "walls": "open box", "phases": "wall turns", "heat": "heat"})
+@example(chosen=BETWEEN | {"contact": "tangential dashpot"})
+@example(chosen=BETWEEN | {"contact": "partial slip"})
+@example(chosen=BETWEEN | {"contact": "rolling"})
+@example(chosen=BETWEEN | {"law": "thornton_ning"})
 @given(chosen=st.fixed_dictionaries({slot: st.sampled_from(sorted(options)) for slot, options in ALIKE.items()}))
 def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
+    """Spheres, rows without torques, which are about a point that LIGGGHTS moves with a plate, and contacts."""
     assume(not sentences_against(chosen))
     data = case_of(chosen)
     warm = {key: data["scene"]["fill"][0][key] for key in ("temperature",) if chosen["heat"] == "heat"}
     data["scene"]["fill"] = [{"name": "heap", "file": "heap.csv"} | warm]
-    places = []
+    data["output"] |= {"energy": True, "loads": True}
+    between = chosen == chosen | {slot: BETWEEN[slot] for slot in ("walls", "phases")}
+    for wall in data["scene"]["wall"]:
+        wall |= NEAR.get(wall["name"], {}) if between else {}
+    found = []
     for tool in ("lammps", "liggghts"):
         try:
-            outcome = run(write_case(data, folder, "heap.toml"), tool, out=folder / f"heap_{tool}", fresh=True)
+            more = {"ranks": 1 + (tool == "lammps" and "rolling" in chosen["contact"]), "fresh": True}
+            outcome = run(write_case(data, folder, "heap.toml"), tool, out=folder / f"heap_{tool}", **more)
         except CaseError as error:
             assert_names_who_takes_it(tool, folder / "heap.toml", error)
             return
-        spheres = outcome.results.particles.set_index(["step", "id"]).sort_index()
-        places.append(spheres[["x", "y", "z", "vx", "vy", "vz", *warm]])
-    assert places[0].index.equals(places[1].index)
+        found.append(outcome.results)
+    ours, theirs = found
     # m and m/s. A sphere that moves by 0.5 % of its radius in the step in which it parts has no last pull in LIGGGHTS
     limit = 1e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6
-    assert np.abs(places[0] - places[1]).to_numpy().max() < limit
+    places = [r.particles.set_index(["step", "id"]).sort_index() for r in found]
+    assert places[0].index.equals(places[1].index)
+    names = ["x", "y", "z", "vx", "vy", "vz", *warm]
+    assert np.abs(places[0][names] - places[1][names]).to_numpy().max() < limit
+    names = [n for n in ("omega_x", "plastic_work") if n in theirs.particles]
+    assert_alike(*places, names, 1e-5 if "rolling" in chosen["contact"] else limit)
+    assert {*ours.rows} == {*theirs.rows}
+    columns = [n for n in theirs.rows if "torque" not in n]
+    rows = [r.rows[columns][1:] for r in found]  # LIGGGHTS's first row has no overlaps
+    assert (np.abs(rows[0] - rows[1]).max() <= limit * np.abs(rows[1]).max().clip(lower=1e-9)).all()
+    keys = ["step", "wall", "i", "j"]
+    assert ours.contacts[keys].equals(theirs.contacts[keys])
+    if between:
+        assert all(theirs.rows[n].any() for n in ("lid_force_z", "left_force_x", "floor_force_z"))
 
 
 def assert_names_who_takes_it(tool, path, error):
