@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from test_guide import blocks, play
 from typer.testing import CliRunner
 
-import epdem
 from epdem import Case, Scene, SceneRun, calibrate, cite, deck, predict, read, run, sweep, theory
 from epdem.cli.main import app
 from epdem.errors import CaseError
@@ -330,6 +329,7 @@ WRONG = {
         lambda c, p: calibrate(c, hv=200, speed="1 m/s"),
         "speed: it belongs to e_n; leave it out",
     ),
+    "a speed below 0": (lambda c, p: calibrate(c, e_n=0.6, speed=-1.0), "must be > 0"),
     "a measurement that is none": (
         lambda c, p: calibrate(c, vickers=200),
         "vickers: no measurement of a Case; there are dent_ratio, e_n",
@@ -421,7 +421,3 @@ def test_partial_slip_and_oblique_impacts_have_sources():
     contact = {"friction": 0.3, "tangential": "partial_slip"}
     slips = cite(scene.replace({"contact": contact}))
     assert any("Jaeger" in text for what, text in slips.items() if what.startswith("partial slip"))
-
-
-def test_the_interface_names_cite():
-    assert epdem.cite is cite
