@@ -176,17 +176,6 @@ def test_programs_that_are_not_there(tmp_path, monkeypatch):
         paths.beside.__wrapped__("templates")
 
 
-def test_clusters_that_do_not_answer(tmp_path, monkeypatch):
-    (tmp_path / slurm.JOBS).parent.mkdir()
-    (tmp_path / slurm.JOBS).write_text('{"7": [1]}')
-    monkeypatch.setattr(slurm, "alive", lambda jobs: None)
-    with says("squeue does not answer; is this a node of a Slurm cluster"):
-        slurm._living(tmp_path)
-    monkeypatch.setattr(slurm, "SILENCE", -1.0)
-    with says("squeue has not answered for -1 s; the jobs go on"):
-        next(slurm._wait(None, tmp_path, {"7": [1]}))
-
-
 def test_jobs_that_slurm_does_not_take(tmp_path, monkeypatch):
     def refuses(**named):
         raise RuntimeError("no partition")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The commands `epdem sweep` and `epdem status`."""
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -41,7 +40,7 @@ def sweep(
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="run failed points again")] = False,
     slurm: Annotated[
         list[str] | None,
-        typer.Option(help="jobs of a cluster with these parameters of sbatch, as partition=P,time=1:00:00; repeat"),
+        typer.Option(help="submit an array with these parameters of sbatch, as partition=P,time=1:00:00; repeat"),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
@@ -50,7 +49,7 @@ def sweep(
     from ..studies.sweep.points import numbers, settings
     from ..studies.sweep.run import check_points, plan
     from ..studies.sweep.run import run as run_points
-    from ..studies.sweep.slurm import parameters, run_jobs
+    from ..studies.sweep.slurm import parameters, submit
     from ..studies.sweep.table import points_of
 
     if seed is not None and latin_hypercube is None:
@@ -66,6 +65,7 @@ def sweep(
         seed=1 if seed is None else seed,
     )
     chosen = None if only is None else numbers(only, len(planned.points))
+    folder = out or planned.default_folder
     if dry_run:
         refuse_options(case, "nothing runs", only=only, slurm=slurm, retry_failed=retry_failed, force=force)
         check_points(planned, range(1, len(planned.points) + 1), jobs, plans=True)
@@ -75,13 +75,15 @@ def sweep(
     if slurm:
         refuse_options(case, "the jobs of --slurm run all points", only=only)
         refuse_options(case, "give the jobs of a cluster by --slurm array_parallelism=N", jobs=jobs)
-    by = partial(run_jobs, given=parameters(slurm)) if slurm else None
+        array = submit(planned, folder, parameters(slurm), retry_failed=retry_failed, force=force)
+        if array:
+            text = f"{planned.name}: array {array} submitted; epdem status {folder} shows its progress"
+            raise answer({"case": planned.name, "folder": str(folder), "array": array}, [text], as_json)
     with bar(planned.name, "points") as report:
         outcome = run_points(
             planned,
-            out or planned.default_folder,
+            folder,
             jobs=jobs,
-            by=by,
             retry_failed=retry_failed,
             force=force,
             only=chosen,
@@ -100,10 +102,9 @@ def status(
     """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
     from ..impacts.prediction_report import plain
     from ..studies.sweep import folder as store
-    from ..studies.sweep.slurm import status as ask
     from ..studies.sweep.table import write
 
-    state = ask(folder)
+    state = store.status(folder)
     if table:
         write(store.read(folder), folder)
     raise answer({name: plain(value) for name, value in state.items()}, _progress(state), as_json)

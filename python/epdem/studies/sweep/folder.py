@@ -24,6 +24,7 @@ import tomlkit
 
 from ...base import paths
 from ...base.files import MARKER, results_folder, write_text
+from ...base.processes import is_alive
 from ...case.keys import keys_of
 from ...case.messages import shorten
 from ...case.scene import is_scene
@@ -177,14 +178,12 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     place.mkdir(parents=True, exist_ok=True)
     (place / FINISHED).unlink(missing_ok=True)
     write_text(place / CASE, sweep.text(number), sync=False)
-    array, task = os.environ.get("SLURM_ARRAY_JOB_ID"), os.environ.get("SLURM_ARRAY_TASK_ID")
     about = {
         "state": RUNNING,
         "reason": "",
         "inputs": sweep.inputs(number),
         "host": socket.gethostname(),
         "pid": os.getpid(),
-        "job": f"{array}_{task}" if array else os.environ.get("SLURM_JOB_ID", ""),  # of Slurm, as squeue names it
         "started": time.strftime("%Y-%m-%d %H:%M:%S"),
         "begin": time.time(),
     }
@@ -211,3 +210,34 @@ def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool, only: Sequence[int]
     done = (DONE,) if retry_failed else (DONE, FAILED)
     wanted = [n for n in only or sweep.numbers if record(sweep, folder, n)["state"] not in done]
     return list({sweep.identities[n - 1]: n for n in reversed(wanted)}.values())[::-1]
+
+
+def status(folder: Path) -> dict[str, Any]:
+    """Progress of a sweep: counts by state, times [s], reasons of failed points.
+
+    A point that began on another machine runs until its record says otherwise.
+    """
+    sweep = read(folder)
+    about, host = records(sweep, folder), socket.gethostname()
+    for row in about:
+        if row["state"] == RUNNING and row["host"] == host and not is_alive(row["pid"], row["begin"]):
+            row["state"] = WAITING
+    states = [row["state"] for row in about]
+    seconds = [row["seconds"] for row in about if "seconds" in row]
+    counts = {state: states.count(state) for state in STATES}
+    failed = [
+        {"point": n, "folder": str(point_folder(sweep, folder, n)), "reason": row["reason"]}
+        for n, row in enumerate(about, start=1)
+        if row["state"] == FAILED
+    ]
+    left = counts[WAITING] + counts[RUNNING]
+    mean = sum(seconds) / len(seconds) if seconds else float("nan")
+    return {
+        "case": sweep.name,
+        "points": len(about),
+        **counts,
+        "seconds": sum(seconds),
+        "longest": max(seconds, default=float("nan")),
+        "work_left": left * mean if left else 0.0,
+        "failures": failed,
+    }

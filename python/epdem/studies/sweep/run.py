@@ -11,7 +11,6 @@ import tomllib
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -271,12 +270,9 @@ def work(sweep: Sweep, folder: Path, numbers: Sequence[int], jobs: int) -> Itera
         left = [n for n in share if isinstance(found, local.Died) and not store.is_finished(sweep, folder, n)]
         if left:
             dead, *rest = left
-            record_death(sweep, folder, dead, str(found))
+            store.end(sweep, folder, dead, store.begin(sweep, folder, dead), rows=None, reason=str(found))
             waiting += [rest] if rest else []
         yield len(share) - len(rest)
-
-
-Work = Callable[[Sweep, Path, list[int]], Iterator[int]]  # as `work`
 
 
 def run(
@@ -284,7 +280,6 @@ def run(
     folder: Path,
     *,
     jobs: int | None = None,
-    by: Work | None = None,
     retry_failed: bool = False,
     force: bool = False,
     only: Sequence[int] | None = None,
@@ -293,18 +288,17 @@ def run(
     """Run the missing and changed points of a sweep and write its table.
 
     only: numbers of points; the table of the outcome has only these and is not written, so that several calls may be at
-    work on other points in one folder. by: what runs the points; None: `jobs` processes on this machine (default: as
-    many as it has cores for). Raises CaseError before anything runs if a point is wrong, OSError if results cannot be
-    stored. Whatever ends it, the same call goes on where it ended.
+    work on other points in one folder. jobs: processes on this machine (default: as many as it has cores for). Raises
+    CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it, the same
+    call goes on where it ended.
     """
     check_points(sweep, store.to_do(sweep, folder, retry_failed=retry_failed, only=only), jobs)
-    by = by or partial(work, jobs=jobs or max(1, local.cores() // sweep.ranks))
     with _share(sweep, folder, force) if only else claim(folder, force=force):
         if not only:
             store.write(sweep, folder)
         numbers, done = store.to_do(sweep, folder, retry_failed=retry_failed, only=only), 0
         report(done, len(numbers))
-        for ended in by(sweep, folder, numbers):
+        for ended in work(sweep, folder, numbers, jobs or max(1, local.cores() // sweep.ranks)):
             done += ended
             report(done, len(numbers))
         found = table.collect(sweep, folder, only) if only else table.write(sweep, folder)
@@ -324,8 +318,3 @@ def _share(sweep: Sweep, folder: Path, force: bool) -> Iterator[None]:
                 raise
             time.sleep(0.1)  # another call writes the definition
     yield
-
-
-def record_death(sweep: Sweep, folder: Path, number: int, how: str) -> None:
-    """Store a point whose process died as failed."""
-    store.end(sweep, folder, number, store.begin(sweep, folder, number), rows=None, reason=how)
