@@ -23,6 +23,7 @@ LIGGGHTS = pytest.param("liggghts", marks=pytest.mark.liggghts)
 LAMMPS = pytest.param("lammps", marks=pytest.mark.lammps)
 YADE = pytest.param("yade", marks=pytest.mark.yade("module"))
 HOSTS = [LIGGGHTS, LAMMPS, YADE]
+PRESSES = [LIGGGHTS, LAMMPS]  # where a force, height or density drives a wall or ends a phase
 
 
 def value(x: object) -> str:

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from parts_cases import BED, BOX, FLOOR, flat, mm, mps, parts, timed
-from scene_runs import HOSTS, LAMMPS, LIGGGHTS, assert_goes_on, ran, run, write_case
+from scene_runs import PRESSES, assert_goes_on, ran, run, write_case
 from test_press import COUNT, HEIGHT, RADIUS, SIDE, plate, press, without
 from test_press_plans import evaluated
 
@@ -16,7 +16,6 @@ from epdem.scenes.judge import summary
 from epdem.scenes.plan.plan import plan
 
 SOLID = COUNT * 4 / 3 * math.pi * RADIUS**3 / SIDE**2  # height [m] of the spheres of the press without void
-DECKS = [LIGGGHTS, LAMMPS]  # that look between rows at energies and numbers
 
 
 def to_bed(**scene):
@@ -24,7 +23,7 @@ def to_bed(**scene):
     return without(press(release_pressure="0.2 MPa", hold="5 us", **scene), "stages")
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_stages_end_at_the_step_at_which_the_bed_has_its_density(engine, tmp_path):
     """The plates of the frames, by the spheres that touch them: within the way of the punch in a step."""
     data = to_bed(densities=[0.6, 0.75])
@@ -47,7 +46,7 @@ def test_stages_end_at_the_step_at_which_the_bed_has_its_density(engine, tmp_pat
     assert found["asked"].isna().all() and found["springback"]["release2"] > 0.01
 
 
-@pytest.mark.parametrize("engine", DECKS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_two_punches_stop_at_the_height_between_them(engine, tmp_path):
     """Between restart files, at which the run stops for a moment."""
     data = to_bed(heights=["0.4 mm"], double_action=True)
@@ -83,7 +82,7 @@ def test_the_force_is_looked_at_from_a_density_on_that_can_bear_it(engine):
     assert "variable loose" not in "\n".join(scene_engine(engine).files(plan(parse(data))).values())
 
 
-@pytest.mark.parametrize("engine", DECKS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_a_press_that_stops_on_its_way_to_a_density_goes_on_to_the_same_tables(engine, tmp_path):
     """Between two looks the run is one, and a restart file stands at none of the rows that end a phase."""
     data = to_bed(densities=[0.75])
@@ -100,7 +99,7 @@ def falls(rows, until):
 
 
 @pytest.mark.parametrize("until", [{"kinetic_energy": "20 nJ"}, {"count": 30}], ids=["energy", "count"])
-@pytest.mark.parametrize("engine", DECKS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_an_energy_and_a_number_of_spheres_are_looked_at_between_rows(engine, until, tmp_path):
     """The same step for long rows of two lengths, and the first in rows of 100 steps at which the condition holds."""
     held = []
@@ -153,19 +152,13 @@ def expected_end(p, looks=1):
     return p.every * math.ceil(steps[0.012 - 2.0 * p.time_step * steps <= NO_VOID][0] / p.every)
 
 
-MARKS = {"liggghts": pytest.mark.liggghts, "lammps": pytest.mark.lammps, "yade": pytest.mark.yade("module")}
-PRESSES = [("liggghts", "linear", FORCE), ("liggghts", "press", FORCE), ("liggghts", "press", None)]
-PRESSES += [
-    (engine, kind, until) for engine in ("lammps", "yade") for kind, until in (("linear", FORCE), ("press", None))
-]
-
-
-@pytest.mark.parametrize(("engine", "kind", "until"), [pytest.param(*x, marks=MARKS[x[0]]) for x in PRESSES])
+@pytest.mark.parametrize("engine", PRESSES)
+@pytest.mark.parametrize(("kind", "until"), [("linear", FORCE), ("press", FORCE), ("press", None)])
 def test_a_run_ends_with_a_frame_where_a_pressed_bed_has_no_void(tmp_path, engine, kind, until):
     path = write_case(under_a_lid(kind, until, contacts=2), tmp_path)
     for _ in range(2):  # and as it is read again
         outcome = run(path, engine=engine, out=tmp_path / "out")
-        looks = 100 if kind == "linear" and engine != "yade" else 1
+        looks = 100 if kind == "linear" else 1
         r, end = outcome.results, expected_end(plan(parse(under_a_lid(kind, until))), looks)
         assert r.phases["until"].to_list() == ["no void", "no void"] and r.phases["end"].to_list() == [end, end]
         assert r.rows["step"].iloc[-1] == r.particles["step"].iloc[-1] == r.contacts["step"].iloc[-1] == end

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from parts_cases import BED, BOX, FLOOR, bead, flat, linear, mm, mps, own, parts, timed
-from scene_runs import HOSTS, LAMMPS, LIGGGHTS, ran
+from scene_runs import HOSTS, LAMMPS, LIGGGHTS, PRESSES, ran
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
@@ -96,7 +96,7 @@ def pressed() -> dict:
     return data | {"output": {"rows": 200, "particles": 3, "energy": True, "loads": True}}
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_every_phase_ends_with_a_row_and_a_frame(engine, tmp_path):
     """The press ends for the force at a step; the lid rests until the row ends, and its contacts still bear a load."""
     found = ran(pressed(), tmp_path, engine).results

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, bead, driven, flat, linear, mm, mps, parts, pipe, timed, vibrating, write_stl
-from scene_runs import HOSTS, LAMMPS, LIGGGHTS, YADE, assert_goes_on, ran, run, write_case
+from scene_runs import HOSTS, LAMMPS, LIGGGHTS, PRESSES, YADE, assert_goes_on, ran, run, write_case
 
 from epdem.case.scene import parse
 from epdem.scenes.judge.warnings import planned_warnings
@@ -178,7 +178,7 @@ def under_plate(*, duration="20 ms", restitution=0.6, speed="0.2 m/s"):
     return data | ({"viscous": {"restitution": restitution}} if restitution else {})
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_a_servo_beside_dashpots_reaches_its_force(engine, tmp_path):
     """At 0.2 m/s n c v/F is 6: the speed alternated between both limits, at 65 to 72 mN and powers of both signs."""
     data = under_plate() | {"output": {"rows": 40, "particles": 4, "energy": True}}
@@ -214,8 +214,10 @@ def test_a_force_drives_an_stl_wall_as_it_drives_a_plate(engine, tmp_path):
     assert np.abs(forces[1] - forces[0]).max() <= 1e-6 * 0.05
 
 
-@pytest.mark.parametrize("engine", HOSTS)
-@pytest.mark.parametrize("kind", ["press", "vibrate"])
+PUSHED = [pytest.param(*host.values, kind, marks=host.marks) for kind in ("press", "vibrate") for host in PRESSES]
+
+
+@pytest.mark.parametrize(("engine", "kind"), [*PUSHED, pytest.param(*YADE.values, "vibrate", marks=YADE.marks)])
 def test_the_work_of_a_wall_that_changes_its_speed_is_all_in_elastic_spheres(engine, kind, tmp_path):
     """Where the wall is at rest: at the end of a press, at the turning points of a vibration. With the speeds of the
     last or of the next step the work is off by 1e-2."""
@@ -233,7 +235,7 @@ def test_the_work_of_a_wall_that_changes_its_speed_is_all_in_elastic_spheres(eng
     assert table["work"].to_numpy() == pytest.approx(held.to_numpy(), abs=1e-3 * held.max())
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_a_second_phase_presses_with_another_force(engine, tmp_path):
     data = under_plate() | {"output": {"rows": 80, "particles": 2}}
     (first,) = data["scene"]["phase"]

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from parts_cases import BED, BOX, FLOOR, bead, driven, flat, linear, mm, parts, timed, vibrating
-from scene_runs import HOSTS, LAMMPS, LIGGGHTS, YADE, assert_goes_on, ran, run, write_case
+from scene_runs import HOSTS, LAMMPS, LIGGGHTS, PRESSES, YADE, assert_goes_on, ran, run, write_case
 
 from epdem.case.scene import parse
 from epdem.engines.liggghts import resume
@@ -99,7 +99,7 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should():
     assert not planned_warnings(given) and not planned_warnings(p)
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(engine, tmp_path):
     hold = driven("lid", [0.0, 0.0, -1.0], "0.2 N", "0.03 m/s")
     lid = PLATE | {"center": mm(0, 0, 15)}

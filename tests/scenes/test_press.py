@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A press: stages to pressures, hold and release, in three engines; its table by routes that do not use it."""
+"""A press: stages to pressures, hold and release, in two engines; its table by routes that do not use it."""
 
 import math
 import re
@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from rich.table import Table
-from scene_runs import HOSTS, LAMMPS, LIGGGHTS, ran, run, write_case
+from scene_runs import LAMMPS, LIGGGHTS, PRESSES, ran, run, write_case
 from stored_runs import CASES
 
 from epdem.case.scene import parse
@@ -50,7 +50,7 @@ def plate(outcome, name, step):
     there = contacts[(contacts["step"] == step) & (contacts["wall"] == name)].set_index("i")
     z = spheres[spheres["step"] == step].set_index("id")["z"][there.index]
     found = z + (1.0 if name == "punch" else -1.0) * (RADIUS - there["overlap"])
-    assert (abs(found - found.median()) < 1e-9).mean() > 0.5  # YADE has a sphere at an edge of triangles twice
+    assert (abs(found - found.median()) < 1e-9).mean() > 0.5
     return found.median()
 
 
@@ -65,7 +65,7 @@ def pressed(tmp_path_factory):
 @pytest.mark.parametrize(
     ("engine", "energy"),
     [
-        *(pytest.param(*e.values, True, marks=e.marks) for e in HOSTS),
+        *(pytest.param(*e.values, True, marks=e.marks) for e in PRESSES),
         pytest.param("liggghts", False, marks=pytest.mark.liggghts),
     ],
 )
@@ -292,7 +292,7 @@ def test_measured_densities_stand_beside_those_of_the_first_load(pressed):
     assert line[1:] in " ".join(scene_sentences(pressed))
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_a_round_die_has_the_same_densities_in_every_engine(engine, tmp_path):
     data = without(press(diameter="0.6 mm", count=120, stages=["30 MPa"]), "box", "hold")
     found = ran(data, tmp_path, engine).results.tables["stages"].set_index("phase")
@@ -311,7 +311,7 @@ def round_die(particles, folder, engine, walls="powder"):
     return ran(data, folder, engine)
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_the_energies_of_two_powders_in_a_round_die_close_and_the_mixture_lies_between_them(engine, tmp_path):
     """A soft sphere between hard ones is not softer than between soft ones; triangles of a wall take no energy.
 
@@ -329,7 +329,7 @@ def test_the_energies_of_two_powders_in_a_round_die_close_and_the_mixture_lies_b
     assert density[0] < density[1] < density[2]
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
     """A box without friction, powder without weight; the floor moves as far as the punch until the release."""
     data = press(double_action=True, stages=["40 MPa"], hold="5 us")
@@ -372,7 +372,7 @@ def test_an_ejection_pushes_the_tablet_by_its_way_against_the_friction_of_the_si
     assert "its forces are no results" in said and outcome.passed
 
 
-@pytest.mark.parametrize("engine", HOSTS)
+@pytest.mark.parametrize("engine", PRESSES)
 def test_the_work_of_a_press_needs_no_energy_balance(engine, tmp_path):
     """The force of the punch times its way."""
     data = without(press(stages=["10 MPa"]), "hold")

@@ -28,7 +28,6 @@ from .scene_parts import (
     motions,
     stop,
     table_text,
-    void,
     walls,
 )
 from .scene_parts import files as files_of_parts
@@ -99,16 +98,13 @@ def check(p: ScenePlan) -> None:
 
 @dataclass(frozen=True)
 class DeckPhase:
-    """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it, steps after
-    which the condition is evaluated. void: formula of the height of the void in the pressed bed; "": no bed is pressed.
-    """
+    """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it."""
 
     run: PhaseSteps
     motions: tuple[DeckMotion, ...]
     bodies: str
     fills: tuple[DeckFill, ...]
     stop: Stop | None
-    void: str
 
 
 @dataclass(frozen=True)
@@ -142,7 +138,6 @@ def _phases(p: ScenePlan) -> Iterator[DeckPhase]:
             bodies=bodies_file(p, run.name),
             fills=tuple(fills(p, run)),
             stop=stop(p, run),
-            void=void(p, run.name),
         )
 
 

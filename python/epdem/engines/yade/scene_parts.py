@@ -5,22 +5,21 @@ import math
 import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from ...base import rendering as decks
-from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ...case.motions import LinearMove, Move, RotateMove, VibrateMove
 from ...case.walls import BoxWall, PlaneWall, PlateWall
 from ...jobs.engine import Unsupported
 from ...scenes.plan import placement
-from ...scenes.plan.beds import PressedBed
 from ...scenes.plan.filling import Insertion
 from ...scenes.plan.meshes import spans, surface_rotation
-from ...scenes.plan.phases import LAG, SLOWING, Phase, PhaseSteps
+from ...scenes.plan.phases import Phase, PhaseSteps
 from ...scenes.plan.plan import ScenePlan
 from ..host import words_of_motion
-from ..input_script import BORNE, bed_height, ended_at, first_look, height_words, torque_origin
+from ..input_script import first_look, torque_origin
 
 EDGES = (
     "walls of triangles ({}): YADE counts a sphere that touches an edge once for each triangle there, so that its "
@@ -65,7 +64,15 @@ class DeckFill:
 
 
 def check_walls(p: ScenePlan) -> None:
-    """Raise Unsupported for walls that YADE does not have."""
+    """Raise Unsupported for walls and motions of walls that YADE does not have."""
+    for phase in p.phases:
+        until = phase.case.condition
+        if (until and until.wall) or any(move.press for move in phase.moves.values()):
+            raise Unsupported(
+                f"scene.phase.{phase.name}: walls move at given velocities in YADE, and no force, height or density "
+                "drives them or ends a phase",
+                "give a linear motion and a duration",
+            )
     for name, mesh in p.scene.meshes.items():
         if surface_rotation(mesh) and any(name in phase.moves for phase in p.phases):
             raise Unsupported(
@@ -150,17 +157,10 @@ def _vibrate(m: VibrateMove) -> DeckMotion:
     return DeckMotion(m.wall, m.kind, (line,), (f'del shaken["{m.wall}"]',))
 
 
-def _press(m: PressMove) -> DeckMotion:
-    values = map(decks.number, (m.force, m.highest_speed, m.speed_in_contact))
-    line = f'pressed["{m.wall}"] = {_numbers(m.direction)}, {", ".join(values)}'
-    return DeckMotion(m.wall, m.kind, (line,), (f'del pressed["{m.wall}"]',))
-
-
 MOTIONS: dict[type[Move], Callable[[Any], DeckMotion]] = {
     LinearMove: _linear,
     RotateMove: _rotate,
     VibrateMove: _vibrate,
-    PressMove: _press,
 }
 
 
@@ -201,25 +201,15 @@ def bodies_file(p: ScenePlan, phase: str) -> str:
 
 @dataclass(frozen=True)
 class Stop:
-    """A condition that may end a phase early, from `after` steps on: formulas of its value and, in a press, of the
-    force on the opposite wall; limit: of the value, 0 where rows alone are looked at; walls: that rest from then on;
-    missing: formula of the missing force over that at which the walls slow, "": they do not. left: formula of the steps
-    that are left to a height, "": no height is awaited; force: formula of the force on a punch there."""
+    """A condition on a row that may end a phase early, from `after` steps on: formula of its value."""
 
     value: str
     condition: str
     after: int
-    opposite: str = ""
-    limit: float = 0.0
-    walls: tuple[str, ...] = ()
-    missing: str = ""
-    left: str = ""
-    force: str = ""
-    lag: ClassVar[int] = LAG  # steps within which the share of their speed follows
 
 
 def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
-    """The condition that may end a phase early."""
+    """The condition that may end a phase early: a kinetic energy, or a number of spheres."""
     until = run.case.condition
     if until is None:
         return None
@@ -227,43 +217,7 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
     if until.kinetic_energy is not None:
         energy = 'row["kinetic_energy"] / row["particles"] if row["particles"] else np.inf'
         return Stop(energy, f"< {limit}", after)
-    if until.count is not None:
-        return Stop('row["particles"]', f"<= {limit}", after)
-    if until.of_bed:
-        return _at_height(p, run, after)
-    value, opposite = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"])', ""
-    stages = p.scene.stages
-    if stages and until.wall == stages.wall:
-        axis = next(w.axis for w in p.scene.wall if w.name == stages.wall and isinstance(w, PlateWall))
-        value, opposite = (f'abs(row["{name}_force_{axis}"])' for name in (stages.wall, stages.against))
-    missing = f"(1 - {value} / {limit}) / {SLOWING}" if until.force else f"({value} / {limit} - 1) / {SLOWING}"
-    if opposite and until.force:  # a sphere that strikes the punch alone is no pressure
-        value += f" * ({opposite} >= {decks.number(BORNE * until.limit)})"
-    if not run.stops:  # what shakes or is driven: the mean of a row
-        return Stop(value, f"{'>=' if until.force else '<='} {limit}", after)
-    condition = " and value ".join(ended_at(run))
-    return Stop(value, condition, after, opposite, until.limit, tuple(run.moves), missing * (run.slows is not None))
-
-
-def _at_height(p: ScenePlan, run: PhaseSteps, after: int) -> Stop:
-    """How a phase ends at a height or density of a bed, one look after the steps that its plates need."""
-    words, stages = height_words(p, run, _height), p.scene.stages
-    opposite = force = ""
-    if stages and words.wall == stages.wall:
-        opposite, force = (f'abs(row["{name}_force_{"xyz"[words.axis]}"])' for name in (stages.against, stages.wall))
-    walls = tuple(run.moves)
-    return Stop(words.value, words.comparison, after, opposite, words.limit, walls, left=words.left, force=force)
-
-
-def _height(bed: PressedBed) -> str:
-    """Formula of the height of a bed."""
-    return bed_height(bed, lambda name: f'O.bodies[walls["{name}"][0]].state.pos[{bed.axis}]')
-
-
-def void(p: ScenePlan, phase: str) -> str:
-    """Formula of the height of the void in the bed that is pressed in a phase; "": no bed is."""
-    beds = (bed for bed in p.pressed if bed.phase == phase)
-    return next((f"{_height(bed)}-{decks.number(bed.solid_height)}" for bed in beds), "")
+    return Stop('row["particles"]', f"<= {limit}", after)
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Phases of a scene in YADE, and its output: rows on the screen, frames and contact tables in files."""
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,6 @@ from .spheres import Fill, Spheres, remove
 KINDS = ("force", "torque")  # of loads
 GROWTH = ("addedOverlap", "screening", "grownOverlap", "bodyPressure")  # of contacts with compaction
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-LOOK = 100  # most steps between two looks at a condition
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, times w, so far
 
 
@@ -31,7 +29,6 @@ class Recorder:
               0: none
     tables    steps between two tables contacts.STEP.npy: see `contact_table`; 0: none
     loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
-    ways      (column, body, axis) of walls whose way [m] is in the rows
     moving    bodies of each wall that moves: the mean of the power that walls give, wall_power; none: no such column
     works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
     """
@@ -50,14 +47,12 @@ class Recorder:
         spins: bool = False,
         tables: int = 0,
         loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
-        ways: Sequence[tuple[str, int, int]] = (),
         moving: Sequence[Sequence[int]] = (),
         works: Sequence[str] = (),
     ):
         self.folder, self.spheres, self.law, self.low, self.high = folder, spheres, law, low, high
         self.every, self.frames, self.spins, self.tables = every, frames, spins, tables
         self.gravity = np.array([0.0, 0.0, fall])
-        self.ways = [(column, k, axis, O.bodies[k].state.pos[axis]) for column, k, axis in ways]
         self.loads, self.moving, self.works = loads, moving, works
         if works:
             O.trackEnergy = True
@@ -67,25 +62,14 @@ class Recorder:
         self._before: dict[int, Any] = {}  # velocities of the last step of bodies of walls that change theirs
         self.starts = PyRunner(command="recorder.start()", iterPeriod=1, initRun=True, dead=True)  # an engine
         self.strain()  # from now on
-        self.names = ["particles", "kinetic_energy", *STRAINS, *(way[0] for way in self.ways), *self.means]
+        self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
         self.values: dict[str, float] = {}  # of the last row
         self._begin, self._end, self._records, self._recorded = 0, 0, False, False
         self._until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None  # of this phase
-        self._opposite: Callable[[dict[str, float]], float] | None = None
-        self._limit = 0.0
-        self._stops: Sequence[int] | None = None
-        self._missing: Callable[[dict[str, float]], float] | None = None
-        self._left: Callable[[], float] | None = None
-        self._force: Callable[[dict[str, float]], float] | None = None
-        self._full: list[Any] | None = None  # velocities of walls that slow
-        self._lag, self._share = 1, 1.0
         self._held, self._value = -1, 0.0  # step at which the condition held, what it held at
-        self._other, self._bearing = 0.0, 0.0
         self._came = 0  # spheres at the end of the phase before
-        self._void: Callable[[], float] | None = None
         self._looked = 0
         self._leaving: list[int] = []
-        self._reached, self._solid = False, False  # whether the condition holds, whether the bed has lost its void
         print("Step", *self.names)
 
     def run(
@@ -96,48 +80,27 @@ class Recorder:
         record: bool = True,
         fills: Sequence[Fill] = (),
         until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None,
-        opposite: Callable[[dict[str, float]], float] | None = None,
-        stops: Sequence[int] | None = None,
-        left: Callable[[], float] | None = None,
-        force: Callable[[dict[str, float]], float] | None = None,
-        missing: Callable[[dict[str, float]], float] | None = None,
-        lag: int = 1,
-        limit: float = 0.0,
         after: int = 0,
-        void: Callable[[], float] | None = None,
     ) -> None:
-        """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase, which
-        is looked at more than `after` steps from its begin; opposite: force on the wall against a punch; stops: bodies
-        that rest from then on, where `look` looks at the condition, without it each row does; left: steps to the height
-        that is awaited, force: on the punch there; missing: force over that at which these bodies slow, without it they
-        do not; lag: steps within which the share of their speed follows it; limit: of the value, near which looks are
-        frequent; void: height of the void in a pressed bed [m], whose loss ends the run with a frame and a table.
+        """A phase. record: whether it has frames and tables; until: value of a row and whether it ends the phase; rows
+        of the first `after` steps do not count.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
         self._records, self._recorded = record, self._records
         self._begin, self._end = self._end, self._end + steps
-        self._until, self._void, self._looked, self._reached = until, void, self._begin + after, False
-        self._opposite, self._stops, self._limit, self._held = opposite, stops, limit, -1
-        self._missing, self._full, self._left, self._force = missing, None, left, force
-        self._lag, self._share = lag, 1.0
-        if until is None and void is None:
+        self._until, self._looked, self._held = until, self._begin + after, -1
+        if until is None:
             while O.iter < self._end:
                 self._step(fills)
             self._came = self.spheres.came
             return
-        while O.iter <= self._end and not self._reached:
+        while O.iter <= self._end and self._held < 0:
             self._step(fills)
-            if self._solid:
-                print(f"phase {name} left no void\nphase {name} ended at step {O.iter - 1}", flush=True)
-                raise SystemExit
         self._end, self._came = O.iter - 1, self.spheres.came
-        if until and not self._reached:
+        if self._held < 0:
             print(f"phase {name} was not ended by its condition")
-        if until:
-            other = f" {self._other:.10g}" * bool(opposite) + f" {self._bearing:.10g}" * bool(force)
-            step = self._held if self._held >= 0 else self._end
-            print(f"phase {name} held at step {step}: {self._value:.10g}{other}")
+        print(f"phase {name} held at step {self._end}: {self._value:.10g}")
         print(f"phase {name} ended at step {self._end}", flush=True)
 
     def _step(self, fills: Sequence[Fill]) -> None:
@@ -190,63 +153,18 @@ class Recorder:
         if O.iter % self.every == 0:
             self.spheres.remove_outside(self.low, self.high)
             self.row()
-            self._solid = O.iter > self._begin and self._void is not None and self._void() <= 0.0
-            if self._stops is None:
-                self._look(self.values)
-            self._reached = self._held >= 0
-        if self._until and O.iter == self._end and not self._reached:
-            self._rest()  # without its condition, too
+            if self._until and self._held < 0 and O.iter > self._looked:
+                value, holds = self._until
+                self._value = float(value(self.values))
+                self._held = O.iter if holds(self._value) else -1
         ended = self._recorded and O.iter == self._begin  # the phase before
         if not (self._records or ended):
             return
-        last = ended or self._solid or self._reached or O.iter == self._end
+        last = ended or self._held >= 0 or O.iter == self._end
         if self.frames and (last or O.iter % self.frames == 0):
             self.frame()
         if self.tables and (last or O.iter % self.tables == 0):
             self.contact_table()
-
-    def look(self) -> int:
-        """Between forces and motion: look at the condition. The steps to the next look: at each row, and far fewer than
-        are left to the limit at the mean rate."""
-        steps = min(LOOK, int(self.every - O.iter % self.every))
-        if self._stops is None or self._held >= 0 or O.iter <= self._looked:
-            return steps
-        if self._left and (left := self._left()) > 1e-6:
-            return math.ceil(left - 1e-6)
-        row = dict(zip(self.means, self.on_walls().tolist(), strict=True))
-        if self._missing:
-            if O.iter % LOOK == 0:
-                self._look(row)
-            left = self._missing(row)  # the share as in kernels/wall_slowing.hpp
-            self._share += (max(min(left, 1.0), max(0.1 * min(left, 0.0), -0.1)) - self._share) / self._lag
-            self._slow(self._share)
-            return 1
-        self._look(row)
-        left = abs(1.0 - self._value / self._limit)
-        return steps if left >= 0.5 else max(1, min(steps, int(0.005 * (O.iter - self._looked) * left / (1.0 - left))))
-
-    def _slow(self, share: float) -> None:
-        """Give the walls of the phase a share of their speed."""
-        states = [O.bodies[k].state for k in self._stops or ()]
-        self._full = self._full or [1.0 * s.vel for s in states]  # copies
-        for s, velocity in zip(states, self._full, strict=True):
-            s.vel = share * velocity if self._held < 0 else 0.0 * velocity
-
-    def _look(self, row: dict[str, float]) -> None:
-        """Whether the condition of the phase holds, in which case its walls rest."""
-        if self._until is None or self._held >= 0 or O.iter <= self._looked:
-            return
-        value, holds = self._until
-        self._value = float(value(row))
-        self._other, self._bearing = (float(x(row)) if x else 0.0 for x in (self._opposite, self._force))
-        if holds(self._value):
-            self._held = O.iter
-            self._rest()
-
-    def _rest(self) -> None:
-        """Bring the walls of the phase to rest."""
-        for k in self._stops or ():
-            O.bodies[k].state.vel = (0, 0, 0)
 
     def move(self, ids: Sequence[int], velocity: Sequence[float]) -> None:
         """Give bodies of a wall their velocity in the coming step [m/s], which is another one in each step."""
@@ -300,8 +218,7 @@ class Recorder:
         v = self.velocities()[there]
         energy = float(0.5 * self.spheres.table[there, 3] @ (v * v).sum(axis=1))
         means = self._sums / max(1, self._samples)
-        ways = (O.bodies[k].state.pos[axis] - start for _, k, axis, start in self.ways)
-        found = [len(v), energy, *self.strain(), *ways, *means.tolist()]
+        found = [len(v), energy, *self.strain(), *means.tolist()]
         self.values = dict(zip(self.names, found, strict=True))
         self._sums, self._samples = np.zeros(len(self.means)), 0
         print(f" {O.iter}" + "".join(f" {x:.10g}" for x in found), flush=True)
