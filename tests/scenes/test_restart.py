@@ -20,49 +20,17 @@ from test_lean import CASES, small
 from epdem.base.files import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
-from epdem.engines import log, restarts
+from epdem.engines import restarts
 from epdem.engines.frames import Frames
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
-from epdem.scenes.plan.plan import ScenePlan, plan
+from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables import results
 from marks import thorough
 
 pytestmark = pytest.mark.liggghts
 SCENES = [p for p in CASES if is_scene(read_toml(p)) and p.stem != "screw"]  # LIGGGHTS refuses triangles that turn
-
-
-def short(path: Path):
-    """A small scene with at least nine restart files on its way; a press ends after half of its rows."""
-    many = 3 if "stages" in read_toml(path)["scene"] else 1
-    output = {"rows": 20 * many, "particles": 10, "restarts": 10 * many}
-    output |= {"contacts": 1} if path.stem == "press_layer" else {}  # its currents follow from them
-    return parse(small(read_toml(path)) | {"output": output}, path)
-
-
-def last_frame(p: ScenePlan, folder: Path) -> np.ndarray:
-    p = p.with_ends(log.ends(folder / launcher.OUT)) if p.ends_early else p
-    return tables.particles(Frames(p, folder, tables.kinds(p), p.frame_steps(p.frames)[:-1])).to_numpy()
-
-
-@pytest.mark.parametrize(
-    "path", [thorough(p, unless=p.stem in ("drum_beads", "press_tablet"), id=p.stem) for p in SCENES]
-)
-def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp_path):
-    p = write_deck(short(path), tmp_path)
-    launcher.run("in.scene", tmp_path)
-    whole = last_frame(p, tmp_path)
-    steps = restart_steps(tmp_path)
-    assert len(steps) >= 9
-    for step in (steps[len(steps) * 2 // 9], steps[len(steps) * 6 // 9]):
-        for frame in tmp_path.glob("particles.*.bin"):
-            frame.unlink()
-        resume.write_resume(p, tmp_path, step)
-        launcher.run("in.resume", tmp_path, append=True)  # the log tells which phases have ended
-        continued = last_frame(p, tmp_path)
-        assert continued.shape == whole.shape
-        assert (continued == whole).all(), f"continued from {step}: largest difference {abs(continued - whole).max()}"
 
 
 INTERRUPTED = """
