@@ -160,7 +160,7 @@ def test_the_tables_and_the_reference_have_the_law(case):
 """
 
 
-@pytest.mark.slow
+@pytest.mark.faults
 def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy, tests_of_copy):
     (copy / LAWS / "toy.hpp").write_text(HEADER)
     register = copy / LAWS / "laws.hpp"

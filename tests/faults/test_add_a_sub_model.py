@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT / "tests" / "engines"))
 import lammps_decks
 from plugin_loop import SAID, SAID_OF_WALLS, Scene, outcome
 
-pytestmark = [pytest.mark.liggghts, pytest.mark.slow]
+pytestmark = [pytest.mark.liggghts, pytest.mark.faults]  # in the build of the faults of the plugin
 
 
 @pytest.fixture
