@@ -115,12 +115,14 @@ def _climb(value: Callable[[Any, Any], Any], place: Place, step: float) -> tuple
 
 
 def _for_arrays(find: Callable[[float, float, str], Point]) -> Callable[..., tuple[Real, tuple[Real, ...]]]:
-    """The same search for every pair of mu and nu, which broadcast; pressure and coordinates have their shape."""
+    """The same search for every pair of mu and nu, which broadcast; pressure and coordinates have their shape. A scene
+    asks for the same few pairs many times: each is searched once."""
+    once = functools.lru_cache(maxsize=1024)(find)
 
     @functools.wraps(find)
     def everywhere(mu: Real, nu: Real, criterion: str = "von_mises") -> tuple[Real, tuple[Real, ...]]:
         mu, nu = np.broadcast_arrays(number("mu", mu, low_ok=True), poisson_ratio("nu", nu))
-        points = [find(float(m), float(n), criterion) for m, n in zip(mu.flat, nu.flat, strict=True)]
+        points = [once(float(m), float(n), criterion) for m, n in zip(mu.flat, nu.flat, strict=True)]
         columns = np.array([(pressure, *place) for pressure, place in points]).reshape(*mu.shape, 4)
         return columns[..., 0][()], tuple(columns[..., k][()] for k in (1, 2, 3))
 
