@@ -2,8 +2,6 @@
 """The commands that need no engine: `epdem predict`, `epdem verify figures`, and the materials file behind them."""
 
 import json
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -83,23 +81,6 @@ def test_a_friction_above_0_3_names_the_pressure_at_which_the_surface_yields(tmp
     speed = found["yield_speeds"]["steel"] * (1.24257 / 1.6) ** 2.5
     assert said.endswith(f"reach at {speed:.3g} m/s")
     assert not json.loads(run("predict", CASES / "oblique_steel.toml", "--json"))["warnings"]
-
-
-@pytest.mark.parametrize(
-    ("program", "numpy_alone"),
-    [
-        ("import epdem.theory, epdem.laws.library, epdem.laws.strengths", True),
-        ("from epdem.cli.main import app; app(['predict', '--json'], standalone_mode=False)", False),
-        ("from epdem.cli.main import app; app(['predict'], standalone_mode=False)", False),
-    ],
-)
-def test_numbers_of_theory_load_no_tables_and_no_templates(program, numpy_alone):
-    slow = {"pandas", "h5py", "jinja2", "matplotlib", "scipy"} | (
-        {"pydantic", "rich", "typer"} if numpy_alone else set()
-    )
-    report = f"import atexit, sys; atexit.register(lambda: print(sorted({slow!r} & {{*sys.modules}}), file=sys.stderr))"
-    done = subprocess.run([sys.executable, "-c", f"{report}\n{program}"], capture_output=True, text=True, check=True)
-    assert done.stderr.strip() == "[]"
 
 
 def test_theory_refuses_a_material_that_is_not_there():
