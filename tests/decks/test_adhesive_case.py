@@ -58,14 +58,6 @@ def test_surface_energies_make_the_same_pair_and_both_are_too_many():
     assert gamma == pytest.approx(2 * math.sqrt(0.1 * 0.4))
 
 
-def test_without_adhesion_the_laws_are_hertz_and_thornton():
-    gamma = {"work_of_adhesion": "0 J/m^2"}
-    for name, plain in (("jkr", "hertz"), ("thornton_ning", "thornton")):
-        sticky, bare = predict(made({"name": name} | gamma)), predict(made({"name": plain}))
-        assert sticky.e_n == pytest.approx(bare.e_n, rel=1e-9)
-        assert sticky.contact_time == pytest.approx(bare.contact_time, rel=1e-7)
-
-
 def test_yade_refuses_adhesion():
     with pytest.raises(CaseError, match="engine yade has no law with adhesion"):
         check_features(engine("yade"), made())

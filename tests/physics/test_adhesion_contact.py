@@ -167,9 +167,3 @@ def test_tabor_number_of_steel_and_rubber_and_its_warning():
     assert "1.5 (< 3)" in adhesion.warning(JKR(**STEEL))
     assert adhesion.warning(JKR(**SOFT)) is None
     assert adhesion.warning(JKR(E_star=E, R_star=R, Gamma=0.0)) is None
-
-
-@pytest.mark.parametrize("bad", [{"E_star": 0.0}, {"R_star": -1.0}, {"Gamma": -0.1}, {"p_y": 0.0}])
-def test_numbers_outside_their_domain_are_refused_by_name(bad):
-    with pytest.raises(ValueError, match=next(iter(bad))):
-        ThorntonNing(**(STEEL | {"p_y": 1e9} | bad))
