@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from parts_cases import BED, FLOOR, bead, driven, flat, linear, mm, mps, parts, pipe, timed
-from scene_runs import HOSTS, ran, run, write_case
+from scene_runs import HOSTS, PRESSES, ran, run, write_case
 
 from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
@@ -314,12 +314,17 @@ LINEAR = linear("lid", 0, 0, -1)
 UNTIL = {"kinetic_energy": "1 J", "after": "1 ms"}  # holds at the first row after 1 ms
 
 
-@pytest.mark.parametrize("engine", HOSTS)
-@pytest.mark.parametrize(
-    ("phase", "way"),
-    [({"move": [DRIVEN]}, 2e-3), ({"move": [LINEAR], "until": UNTIL}, 1.2e-3)],
-    ids=["driven", "until"],
-)
+SOME_TIME = {"move": [LINEAR], "until": UNTIL}
+MOVED = [
+    pytest.param(*host.values, {"move": [DRIVEN]}, 2e-3, marks=host.marks, id=f"driven-{host.values[0]}")
+    for host in PRESSES
+]
+MOVED += [
+    pytest.param(*host.values, SOME_TIME, 1.2e-3, marks=host.marks, id=f"until-{host.values[0]}") for host in HOSTS
+]
+
+
+@pytest.mark.parametrize(("engine", "phase", "way"), MOVED)
 def test_a_late_body_in_a_wall_whose_place_the_run_alone_knows_ends_the_run(engine, phase, way, tmp_path):
     """A plate moves by 1 m/s from 30 mm on; without the motion the body of 1.5 mm is free in both cases."""
     for off, met in ((2.1e-3, False), (1.0e-3, True)):
