@@ -68,7 +68,7 @@ def test_the_deck_of_a_scene_in_lammps_is_as_stored(name):
 
 
 def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
-    """Facets, motions of each kind, a phase of another time step that a condition ends, a stream, loads and power."""
+    """Facets, motions of each kind, a phase of another time step that a condition ends, a late fill, loads, power."""
     data = read_toml(CASES / "sieve_cylinder.toml")
     scene, sides = data["scene"], {"kind": "plate", "axis": "z", "size": ["9 mm", "9 mm"], "material": "steel"}
     del data["viscous"]
@@ -78,7 +78,7 @@ def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
     turn = {"wall": "cylinder", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "rate": "-2 rad/s"}
     work = {"name": "work", "duration": "1 ms", "time_step": "1e-6 s", "until": {"kinetic_energy": "1 nJ"}}
     scene["phase"] += [work | {"move": [shake, down, turn]}]
-    scene["fill"] += [scene["fill"][0] | {"name": "stream", "count": 3, "rate": "30 kHz", "phase": "work"}]
+    scene["fill"] += [scene["fill"][0] | {"name": "more", "count": 3, "phase": "work"}]
     scene["fill"][-1].pop("mass", None)
     texts = yade_scene.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
     compare(HERE, "yade_moving_parts", texts["scene.py"])

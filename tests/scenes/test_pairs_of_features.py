@@ -366,7 +366,7 @@ def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
 
 @pytest.mark.yade("module")
 @tries(4, phases=[Phase.explicit, Phase.generate])
-@example(chosen=PLAIN | {"walls": "cone that turns", "amount": "poured", "bodies": "late body", "phases": "until rest"})
+@example(chosen=PLAIN | {"walls": "cone that turns", "bodies": "late body", "phases": "until rest"})
 @example(chosen=PLAIN | {"walls": "gate", "output": "loads", "phases": "wall moves, then tilts", "measure": "torque"})
 @example(chosen=PLAIN | RUBBED)
 @given(chosen=CHOICES)

@@ -80,7 +80,7 @@ RESULTS, PREVIOUS = ("results.h5", "results.csv", "report.html", "*.png", "*.svg
 # Names that a run may write, in the folder or below it.
 OUTPUTS = re.compile(
     r"(in|results|out|particles|contacts|triangles|restart|picture|path)\..*|(contacts_|wall_contacts|scene|stress_).*"
-    r"|.*\.(in|png|svg|pdf|data|stl|so)|(spheres.*|fill[1-9].*|wall_.*|end)\.txt|report\.html|impact\.py"
+    r"|.*\.(in|png|svg|pdf|data|stl|so)|(spheres.*|wall_.*|end)\.txt|report\.html|impact\.py"
     r"|(e_n|psi|key|energy|figure_8_.*|thornton_ning_1998)\.csv",
     re.DOTALL,
 )

@@ -17,13 +17,12 @@ from ..host import refuse, refuse_narrow
 from .classes import ContactClasses, functors, materials
 from .scene_parts import (
     HEAD,
-    DeckFill,
     DeckMotion,
+    LateSpheres,
     Stop,
     Wall,
-    bodies_file,
     check_walls,
-    fills,
+    late_spheres,
     loads,
     motions,
     stop,
@@ -89,6 +88,8 @@ def check(p: ScenePlan) -> None:
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
     }
+    for fill in p.insertions:
+        unknown[f"{fill.key} with a rate"] = (fill.rate, "all spheres come at the begin of a phase")
     for name in p.stress_walls:
         key = "wear" if p.scene.meshes[name].wear else "stress"
         unknown[f"scene.wall.{name}.{key}"] = (True, "a YADE scene writes the force of a whole wall")
@@ -98,12 +99,11 @@ def check(p: ScenePlan) -> None:
 
 @dataclass(frozen=True)
 class DeckPhase:
-    """A phase. bodies: table of the spheres that come at its begin. stop: condition on a row that ends it."""
+    """A phase. late: the spheres that come at its begin. stop: condition on a row that ends it."""
 
     run: PhaseSteps
     motions: tuple[DeckMotion, ...]
-    bodies: str
-    fills: tuple[DeckFill, ...]
+    late: LateSpheres | None
     stop: Stop | None
 
 
@@ -135,8 +135,7 @@ def _phases(p: ScenePlan) -> Iterator[DeckPhase]:
         yield DeckPhase(
             run=run,
             motions=motions(p, run),
-            bodies=bodies_file(p, run.name),
-            fills=tuple(fills(p, run)),
+            late=late_spheres(p, run.name),
             stop=stop(p, run),
         )
 
@@ -144,7 +143,7 @@ def _phases(p: ScenePlan) -> Iterator[DeckPhase]:
 def _placed(p: ScenePlan) -> bool:
     """Whether there are spheres at the start."""
     first = p.phases[0].name
-    return bool(p.scene.table) or any(f.phase == first and f.rate is None for f in p.insertions)
+    return bool(p.scene.table) or any(f.phase == first for f in p.insertions)
 
 
 def deck(p: ScenePlan) -> SceneDeck:

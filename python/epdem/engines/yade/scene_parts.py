@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The parts of a scene in YADE: walls, their motions, spheres that come during the run, and what YADE cannot have."""
+"""The parts of a scene in YADE: walls, their motions, spheres of later phases, and what YADE cannot have."""
 
-import math
-import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +12,6 @@ from ...case.motions import LinearMove, Move, RotateMove, VibrateMove
 from ...case.walls import BoxWall, PlaneWall, PlateWall
 from ...jobs.engine import Unsupported
 from ...scenes.plan import placement
-from ...scenes.plan.filling import Insertion
 from ...scenes.plan.meshes import spans, surface_rotation
 from ...scenes.plan.phases import Phase, PhaseSteps
 from ...scenes.plan.plan import ScenePlan
@@ -47,20 +44,6 @@ class Wall:
     axis: int = 0
     place: float = 0.0
     file: str = ""
-
-
-@dataclass(frozen=True)
-class DeckFill:
-    """Spheres that come during a phase at places that the run finds; their sizes are in a file of this number.
-
-    batch: of the spheres that come every `every` steps; 0: all come at the begin.
-    """
-
-    number: int
-    fill: Insertion
-    seed: int
-    batch: float
-    every: int
 
 
 def check_walls(p: ScenePlan) -> None:
@@ -178,25 +161,28 @@ def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
     return [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.measured_walls]
 
 
-def fills(p: ScenePlan, phase: Phase) -> Iterator[DeckFill]:
-    """The spheres that come during a phase at places that the run finds."""
-    step = phase.time_step
-    for n, f in _late(p):
-        if f.phase == phase.name:
-            every = max(1, math.ceil(f.period / step)) if f.rate else 1
-            batch = f.rate * every * step if f.rate else 0.0
-            yield DeckFill(number=n, fill=f, seed=p.case.numerics.seed + n, batch=batch, every=every)
+@dataclass(frozen=True)
+class LateSpheres:
+    """Spheres that come with a phase but the first, drawn before the run: the file with their table.
+
+    keys: place in the case, number and what to change if another sphere is there, of each fill and body.
+    """
+
+    file: str
+    keys: tuple[tuple[str, int, str], ...]
 
 
-def _late(p: ScenePlan) -> Iterator[tuple[int, Insertion]]:
-    """The fills that are not there from the start, with their numbers."""
-    first = p.phases[0].name
-    return ((n, f) for n, f in enumerate(p.insertions, 1) if f.rate is not None or f.phase != first)
-
-
-def bodies_file(p: ScenePlan, phase: str) -> str:
-    """The table of the single spheres that come with a phase but the first; "": none do."""
-    return f"spheres_{phase}.txt" if any(b.phase == phase for b in p.scene.later) else ""
+def late_spheres(p: ScenePlan, phase: str) -> LateSpheres | None:
+    """The spheres that come with a phase but the first; None: none do."""
+    if phase == p.phases[0].name:
+        return None
+    fills = dict[str, int]()
+    for f in (f for f in p.insertions if f.phase == phase):
+        fills[f.key] = fills.get(f.key, 0) + f.count
+    keys = [(key, count, "raise the region, or use --engine liggghts") for key, count in fills.items()]
+    advice = "move the body, or give it another phase"
+    keys += [(f"scene.body.{b.name}.position", 1, advice) for b in p.scene.later if b.phase == phase]
+    return LateSpheres(f"spheres_{phase}.txt", tuple(keys)) if keys else None
 
 
 @dataclass(frozen=True)
@@ -221,7 +207,7 @@ def stop(p: ScenePlan, run: PhaseSteps) -> Stop | None:
 
 
 def files(p: ScenePlan) -> dict[str, str]:
-    """The rectangles or triangles of each wall, the spheres of later phases and the sizes of fills, by file."""
+    """The rectangles or triangles of each wall and the spheres of later phases, by file."""
     texts = {}
     for wall in (w for w in walls(p).values() if w.file):
         head = "# corners of a triangle, x y z of each [m]"
@@ -235,14 +221,9 @@ def files(p: ScenePlan) -> dict[str, str]:
             rows = [_large_triangle(p, wall.name)]
         texts[wall.file] = table_text(head, rows)
     for phase in p.phases:
-        if name := bodies_file(p, phase.name):
-            texts[name] = table_text(HEAD, placement.later_bodies(p, phase.name))
-    for n, f in _late(p):
-        rng = random.Random(p.case.numerics.seed + n)
-        sizes = placement.sizes(p.case, p.model, f, rng)
-        if f.rate is not None:
-            rng.shuffle(sizes)
-        texts[f"fill{n}.txt"] = table_text("# radius [m], type of each sphere", sizes)
+        if late := late_spheres(p, phase.name):
+            rows = [*placement.spheres(p, phase.name).tolist(), *placement.later_bodies(p, phase.name)]
+            texts[late.file] = table_text(HEAD, rows)
     return texts
 
 

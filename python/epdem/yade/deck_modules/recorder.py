@@ -10,7 +10,7 @@ from yade import O
 from yade.utils import sumForces, sumTorques
 from yade.wrapper import PyRunner
 
-from .spheres import Fill, Spheres, remove
+from .spheres import Spheres, remove
 
 KINDS = ("force", "torque")  # of loads
 GROWTH = ("addedOverlap", "screening", "grownOverlap", "bodyPressure")  # of contacts with compaction
@@ -78,7 +78,6 @@ class Recorder:
         steps: int,
         *,
         record: bool = True,
-        fills: Sequence[Fill] = (),
         until: tuple[Callable[[dict[str, float]], float], Callable[[float], bool]] | None = None,
         after: int = 0,
     ) -> None:
@@ -92,20 +91,18 @@ class Recorder:
         self._until, self._looked, self._held = until, self._begin + after, -1
         if until is None:
             while O.iter < self._end:
-                self._step(fills)
+                self._step()
             self._came = self.spheres.came
             return
         while O.iter <= self._end and self._held < 0:
-            self._step(fills)
+            self._step()
         self._end, self._came = O.iter - 1, self.spheres.came
         if self._held < 0:
             print(f"phase {name} was not ended by its condition")
         print(f"phase {name} held at step {self._end}: {self._value:.10g}")
         print(f"phase {name} ended at step {self._end}", flush=True)
 
-    def _step(self, fills: Sequence[Fill]) -> None:
-        for fill in fills:
-            fill.pour(O.iter - self._begin)
+    def _step(self) -> None:
         self.starts.dead = not self.spheres.new
         O.step()
 

@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The spheres of a scene in YADE: spheres of a table, spheres that come during the run, spheres that leave the room."""
+"""The spheres of a scene in YADE: those of the start, those of later phases, those that leave the room."""
 
-import math
-import random
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from yade import O
 from yade.utils import sphere
-
-ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows some hundred are needed
 
 
 def remove(ids: Iterable[int]) -> None:
@@ -86,15 +82,16 @@ class Spheres:
         self.ids, self.states = [self.ids[k] for k in kept], [self.states[k] for k in kept]
         self.table = self.table[inside]
 
-    def require_free(self, phase: str, **bodies: tuple[float, float, float, float]) -> None:
-        """Raise RuntimeError if another sphere is at the place of a body: x, y, z, radius [m] of each by its name."""
-        positions = self.positions()
-        for name, (*place, radius) in bodies.items():
-            if not self.is_free(place, radius * (1.0 - 1e-6), positions):
-                raise RuntimeError(
-                    f"scene.body.{name}.position: at the begin of phase {phase} another sphere is there; move the "
-                    "body, or give it another phase"
-                )
+    def come(self, phase: str, rows: Any, *keys: tuple[str, int, str]) -> None:
+        """Add the spheres of a later phase, see `add`. keys: of each fill and body its place in the case, its number of
+        rows and advice. Raises RuntimeError if another sphere is at the place of one."""
+        positions, begin = self.positions(), 0
+        for key, count, advice in keys:
+            for *place, radius in rows[begin : begin + count, :4]:
+                if not self.is_free(place, radius * (1.0 - 1e-6), positions):
+                    raise RuntimeError(f"{key}: at the begin of phase {phase} another sphere is there; {advice}")
+            begin += count
+        self.add(rows)
 
     def is_free(self, place: Any, radius: float, positions: Any) -> bool:
         """Whether a sphere at a place overlaps no other one."""
@@ -102,63 +99,3 @@ class Spheres:
         for axis in np.flatnonzero(self.period):
             way[:, axis] -= self.period[axis] * np.round(way[:, axis] / self.period[axis])
         return bool(((way**2).sum(axis=1) > (radius + self.table[: len(way), 2]) ** 2).all())
-
-
-class Fill:
-    """Spheres that come during a phase at random places of a region, without overlap. SI.
-
-    sizes      radius [m] and type of each, in the order in which they come
-    low, high  limits of the region [m]; circle: x, y and radius of a region that is round about z
-    velocity   [m/s]
-    batch      spheres that are due every `every` steps; 0: all come in the first step
-    """
-
-    def __init__(
-        self,
-        spheres: Spheres,
-        name: str,
-        sizes: Any,
-        *,
-        low: Sequence[float],
-        high: Sequence[float],
-        seed: int,
-        velocity: Sequence[float] = (0.0, 0.0, 0.0),
-        circle: Sequence[float] | None = None,
-        batch: float = 0.0,
-        every: int = 1,
-    ):
-        self.spheres, self.name, self.sizes, self.velocity = spheres, name, sizes, velocity
-        self.low, self.high, self.circle, self.batch, self.every = low, high, circle, batch, every
-        self._random = random.Random(seed)
-        self._came = self._batches = 0
-
-    def pour(self, step: int) -> None:
-        """Add the spheres that are due in a step of the phase. A sphere without a free place comes later."""
-        batches = step // self.every + 1
-        if batches == self._batches or self._came == len(self.sizes):
-            return
-        self._batches = batches
-        due = min(len(self.sizes), math.floor(batches * self.batch)) if self.batch else len(self.sizes)
-        positions = self.spheres.positions()
-        while self._came < due:
-            radius, kind = self.sizes[self._came]
-            place = self._place(radius, positions)
-            if place is None and self.batch:
-                break
-            if place is None:
-                raise RuntimeError(
-                    f"{self.name}: no room is left for sphere {self._came + 1} without overlap after {ATTEMPTS} "
-                    "attempts; give fewer spheres or a larger region"
-                )
-            self.spheres.add([(*place, radius, kind, *self.velocity, 0.0, 0.0, 0.0, 0.0)])
-            positions = np.vstack([positions, place])
-            self._came += 1
-
-    def _place(self, radius: float, positions: Any) -> Any:
-        for _ in range(ATTEMPTS):
-            place = [self._random.uniform(a + radius, b - radius) for a, b in zip(self.low, self.high, strict=True)]
-            if self.circle and math.dist(place[:2], self.circle[:2]) > self.circle[2] - radius:
-                continue
-            if self.spheres.is_free(place, radius, positions):
-                return place
-        return None
