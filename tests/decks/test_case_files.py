@@ -181,17 +181,3 @@ def test_a_device_is_not_read_to_its_end():
 def test_line_ends_and_byte_order_marks_of_other_systems_are_no_mistake(tmp_path):
     (tmp_path / "case.toml").write_bytes(b"\xef\xbb\xbfa = 1\r\nb = 2\r\n")
     assert read_toml(tmp_path / "case.toml") == {"a": 1, "b": 2}
-
-
-@pytest.mark.parametrize("si", ["m", "s", "Pa", "J/m^3", "m/s", "m/s^2", "rad", "rad/s", "Hz", "N", "J", "kg/m^3"])
-def test_a_prefix_read_without_pint_is_that_of_pint(si):
-    for prefix in ("", *units.PREFIXES):
-        try:
-            expected = units._by_pint(prefix + si, si)
-        except ValueError:
-            expected = None
-        try:
-            value = units._factor(prefix + si, si)
-        except ValueError:
-            value = None
-        assert value == (expected and pytest.approx(expected, rel=1e-15)), prefix  # Pint 0.24 rounds 1 nPa
