@@ -140,14 +140,8 @@ def test_changed_sources_in_cpp_remove_the_plugin_of_lammps_and_the_module_of_ya
     machine.complete()
     (machine.bin / "find").unlink()
     (machine.bin / "find").symlink_to(shutil.which("find"))
-    for name in (
-        "pyproject.toml",
-        "CMakeLists.txt",
-        "scripts/constraints.txt",
-        "python/a.py",
-        changed,
-        "cpp_contact/b",
-    ):
+    sources = ("pyproject.toml", "CMakeLists.txt", "scripts/constraints.txt", "python/a.py", "cpp_contact/b")
+    for name in (*sources, changed):
         (machine.clone / name).parent.mkdir(exist_ok=True)
         (machine.clone / name).touch()
     (machine.clone / "templates").mkdir(exist_ok=True)

@@ -145,21 +145,8 @@ class Runner:
     def run(self, *words: str, only: str = "", env: dict[str, str] | None = None) -> Done:
         """Run pytest with `words`, up to a failure, and with `env` in the environment."""
         out = self.folder / "out.pytest"
-        words = (
-            "-q",
-            "-x",
-            "-p",
-            "no:cacheprovider",
-            "-p",
-            "no:xdist",
-            "-m",
-            "",
-            "--hypothesis-profile=red",
-            *words,
-            "-k",
-            only,
-        )
-        print(json.dumps([words, env or {}, str(out)]), file=self.server.stdin, flush=True)
+        options = ["-qx", "-pno:cacheprovider", "-pno:xdist", "-m", "", "--hypothesis-profile=red"]
+        print(json.dumps([[*options, *words, "-k", only], env or {}, str(out)]), file=self.server.stdin, flush=True)
         code = int(self.server.stdout.readline())
         return Done(code, out.read_text(errors="replace"))
 

@@ -128,15 +128,8 @@ def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0, loading
 
 def reference(law, psi_1, speed):
     """psi_2 by 400 springs and 2000 steps."""
-    slip = partial_slip.rebound(
-        law,
-        m_star=M,
-        m_tangential=2 / 7 * M,
-        mu=MU,
-        G_star=G_STAR,
-        v_n=speed,
-        slip=MU / KAPPA * speed * np.asarray(psi_1),
-    )
+    moved = MU / KAPPA * speed * np.asarray(psi_1)
+    slip = partial_slip.rebound(law, m_star=M, m_tangential=2 / 7 * M, mu=MU, G_star=G_STAR, v_n=speed, slip=moved)
     return KAPPA / MU * slip / speed
 
 

@@ -49,17 +49,8 @@ def law(name, E_star, R_star, strength):
 def law_rows(name):
     """Restitution, times and peaks of one impact; force, radius and work at an overlap and on the way back."""
     both = CONTACT | {"strength": Y}
-    units = {
-        "e_n": ONE,
-        "contact_time": S,
-        "force_max": N,
-        "overlap_max": M,
-        "radius_max": M,
-        "residual_overlap": M,
-        "work_in": J,
-        "work_out": J,
-        "plastic_work": J,
-    }
+    units = {"e_n": ONE, "contact_time": S, "force_max": N, "overlap_max": M, "radius_max": M, "residual_overlap": M}
+    units |= dict.fromkeys(("work_in", "work_out", "plastic_work"), J)
 
     def impact(m_star, speed, **numbers):
         x = restitution.impact(law(name, **numbers), m_star=m_star, speed=speed)
@@ -90,17 +81,9 @@ def law_rows(name):
 
 
 def oblique_impact(E_star, R_star, p_y, mass, G_star, v_n):
-    x = oblique.impact(
-        LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y),
-        mass=mass,
-        R=R_star,
-        mu=0.2,
-        G_star=G_star,
-        v_n=v_n,
-        theta=0.5,
-        steps=200,
-        springs=40,
-    )
+    both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
+    numbers = {"mu": 0.2, "theta": 0.5, "steps": 200, "springs": 40}
+    x = oblique.impact(both, mass=mass, R=R_star, G_star=G_star, v_n=v_n, **numbers)
     return [x.f, x.e_n, x.e_t, x.spin, x.patch]
 
 
@@ -116,17 +99,8 @@ def split(E_star, R_star, p_y, m_star, speed, E, nu, density):
 
 def slip_rebound(E_star, R_star, p_y, G_star, m_star, speed, slip):
     both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
-    return partial_slip.rebound(
-        both,
-        m_star=m_star,
-        m_tangential=2 / 7 * m_star,
-        mu=0.2,
-        G_star=G_star,
-        v_n=speed,
-        slip=slip,
-        steps=200,
-        springs=40,
-    )
+    numbers = {"m_tangential": 2 / 7 * m_star, "mu": 0.2, "steps": 200, "springs": 40}
+    return partial_slip.rebound(both, m_star=m_star, G_star=G_star, v_n=speed, slip=slip, **numbers)
 
 
 ROWS = [
@@ -202,18 +176,9 @@ ROWS = [
 ]
 
 # a fit with its own unit, words, an integration in steps, and those that the rows above call under another name
-OTHERWISE = {
-    "printed.bridges_restitution",
-    "oblique.impact",
-    "oblique.one_spring",
-    "waves.energy_split",
-    "waves.history",
-    "restitution.impact",
-    "restitution.e_n",
-    "restitution.loading_time",
-    "yielding.first_yield_speed",
-    "partial_slip.rebound",
-}
+OTHERWISE = {"printed.bridges_restitution", "oblique.impact", "oblique.one_spring", "waves.energy_split"}
+OTHERWISE |= {"waves.history", "restitution.impact", "restitution.e_n", "restitution.loading_time"}
+OTHERWISE |= {"yielding.first_yield_speed", "partial_slip.rebound"}
 
 
 @pytest.mark.parametrize("row", ROWS, ids=str)

@@ -53,14 +53,8 @@ def page(tmp_path_factory):
 
 def look(page: Path, *more: str) -> subprocess.CompletedProcess[str]:
     """Chromium on a page, until it is drawn."""
-    words = [
-        str(CHROMIUM),
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--hide-scrollbars",
-        "--enable-logging=stderr",
-    ]
+    words = [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
+    words += ["--enable-logging=stderr"]
     words += [f"--user-data-dir={page.parent / 'profile'}", "--virtual-time-budget=8000", *more, f"file://{page}"]
     return subprocess.run(words, capture_output=True, text=True, timeout=120)
 
