@@ -11,10 +11,12 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
 from epdem import Scene
 from epdem import run as api_run
 from epdem.base.files import running
+from epdem.cli.main import app
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import EngineError
 from epdem.report.sweeps import _by_key
@@ -135,11 +137,11 @@ def test_the_warnings_of_the_points_stand_in_terminal_table_and_page(bed, tmp_pa
     """A step above the stable one of a contact, at both points."""
     bed.write_text(BED.replace("0.3 s", "0.02 s") + '[numerics]\ntime_step = "0.5 ms"\n')
     out = tmp_path / "out"
-    command = [EPDEM, "sweep", str(bed), "--set", "scene.count=5,10", "-o", str(out)]
-    said = subprocess.run(command, capture_output=True, text=True).stdout
+    command = ["sweep", str(bed), "--set", "scene.count=5,10", "-o", str(out)]
+    said = CliRunner().invoke(app, command).stdout
     expected = r"2 of 2 points, here point 1: numerics\.time_step = 0\.0005 s: .* is stable up to"
     assert re.search(f"warning: {expected}", said)
-    warnings = json.loads(subprocess.run([*command, "--json"], capture_output=True).stdout)["warnings"]
+    warnings = json.loads(CliRunner().invoke(app, [*command, "--json"]).stdout)["warnings"]
     assert re.match(expected, warnings[0]) and "the spheres still move" in warnings[1]
     assert pd.read_csv(out / "sweep.csv")["warnings"].str.startswith("numerics.time_step").all()
     page = (out / "report.html").read_text()
@@ -186,8 +188,8 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
     process.wait()
     while running(out) and time.monotonic() < end:
         time.sleep(0.01)
-    assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["waiting"] == 1
-    subprocess.check_call(command, stdout=subprocess.DEVNULL)
+    assert folder.status(out)["waiting"] == 1
+    run.run(run.plan(bed, {"scene.count": "60"}), out, jobs=1)
     place = folder.point_folder(folder.read(out), out, 1)
     assert (place / "in.resume").exists()
     whole = run.run(run.plan(bed, {"scene.count": "60"}), tmp_path / "whole")
