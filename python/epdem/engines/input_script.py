@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import NamedTuple
 
 import numpy as np
 
@@ -299,47 +298,29 @@ def _at_height(
 
     whole: the phase with the void of the bed alone. Other arguments as of `stop_condition`.
     """
-    words, stages = height_words(p, run, place), p.scene.stages
+    bed, until, stages = bed_of(p.pressed, run.case), run.case.condition, p.scene.stages
+    assert bed is not None and until is not None
+    height, limit = place(bed), until.limit
+    if until.height:
+        value, comparison = height, f"<= {number(limit * (1.0 + ROUNDING))}"
+    else:
+        value, comparison = f"{number(bed.solid_height)}/{height}", f">= {number(limit * (1.0 - ROUNDING))}"
+    left = f"({height}-{number(until.height or bed.solid_height / limit)})"
     opposite = of_punch = ""
-    if stages and words.wall == stages.wall:
-        opposite, of_punch = (f"abs({force(name, 1 + words.axis)})" for name in (stages.against, stages.wall))
+    if stages and bed.wall == stages.wall:
+        opposite, of_punch = (f"abs({force(name, 1 + bed.axis)})" for name in (stages.against, stages.wall))
     return replace(
         whole,
-        formula=words.value,
-        condition=f"${{found}} {words.comparison}",
-        limit=words.limit,
+        formula=value,
+        condition=f"${{found}} {comparison}",
+        limit=limit,
         every=p.every,
         apart=True,
-        left=words.left,
+        left=f"{left}/{number(closing_speed(bed, run.case) * run.time_step)}",
         opposite=opposite,
         force=of_punch,
         stop=tuple(stop),
     )
-
-
-class HeightWords(NamedTuple):
-    """A height or density that ends a phase: wall and axis of the press, formula of the value, comparison with which it
-    is reached, its limit, formula of the steps that are left."""
-
-    wall: str
-    axis: int
-    value: str
-    comparison: str
-    limit: float
-    left: str
-
-
-def height_words(p: ScenePlan, run: PhaseSteps, place: Callable[[PressedBed], str]) -> HeightWords:
-    """The height or density that ends a phase. place: formula of the height of a bed."""
-    bed, until = bed_of(p.pressed, run.case), run.case.condition
-    assert bed is not None and until is not None
-    height, limit = place(bed), until.limit
-    left = f"({height}-{number(until.height or bed.solid_height / limit)})"
-    left += f"/{number(closing_speed(bed, run.case) * run.time_step)}"
-    if until.height:
-        return HeightWords(bed.wall, bed.axis, height, f"<= {number(limit * (1.0 + ROUNDING))}", limit, left)
-    value = f"{number(bed.solid_height)}/{height}"
-    return HeightWords(bed.wall, bed.axis, value, f">= {number(limit * (1.0 - ROUNDING))}", limit, left)
 
 
 def press_speed(force: str, move: PressMove) -> str:
