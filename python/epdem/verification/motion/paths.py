@@ -29,26 +29,13 @@ def _rates(path: Array) -> Array:
     return np.diff(path, axis=0, prepend=path[:1]) / TIME_STEP
 
 
-def _quaternions(spin: Array) -> Array:
-    """Orientations, (n, 2, 4), of bodies that begin unturned and have a constant spin in each step."""
-    found = np.empty((*spin.shape[:2], 4))
-    found[0] = (1.0, 0.0, 0.0, 0.0)
-    for k in range(1, len(spin)):
-        for side in range(2):
-            w, v = found[k - 1, side, 0], found[k - 1, side, 1:]
-            angle = float(np.linalg.norm(spin[k, side])) * TIME_STEP
-            c, s = np.cos(angle / 2), np.sinc(angle / (2 * np.pi)) * spin[k, side] * TIME_STEP / 2
-            found[k, side] = [c * w - s @ v, *(c * v + w * s + np.cross(s, v))]
-    return found
-
-
 def _motion(name: str, touch: Touch, between: Array, spin: Array | None = None) -> Motion:
     """Of both spheres, half each, from overlap and shears along and across, (n, 3) [m]; spin (n, 2, 3) [rad/s]."""
     reach = sum(touch.radii)
     apart = (reach - between[:, :1]) * NORMAL + between[:, 1:2] * ALONG + between[:, 2:] * ACROSS
     place = np.stack([0.5 * apart, -0.5 * apart], axis=1)
     spin = np.zeros_like(place) if spin is None else spin
-    return Motion(name, TIME_STEP, place, _rates(place), spin, _quaternions(spin))
+    return Motion(name, TIME_STEP, place, _rates(place), spin)
 
 
 def _depth(touch: Touch) -> float:
@@ -143,14 +130,12 @@ def rigid_rotation(touch: Touch) -> Motion:
     w, angle = 2 * np.pi / (TURN * TIME_STEP), _angles()[1:]
     start = loaded.place[-1]
     place = _about_axis(start, angle)
-    spin = np.concatenate([loaded.spin, np.broadcast_to(w * AXIS, place.shape)])
     return Motion(
         loaded.name,
         TIME_STEP,
         np.concatenate([loaded.place, place]),
         np.concatenate([loaded.velocity, np.cross(w * AXIS, place)]),
-        spin,
-        _quaternions(spin),
+        np.concatenate([loaded.spin, np.broadcast_to(w * AXIS, place.shape)]),
     )
 
 

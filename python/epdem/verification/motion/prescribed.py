@@ -65,8 +65,7 @@ class Touch:
 class Motion:
     """Places [m], velocities [m/s] and spins [rad/s] of both spheres in every step, shape (n, 2, 3).
 
-    The slip of a step is its velocity times the time step [s]. quaternions: w, x, y, z, shape (n, 2, 4); no law reads
-    them, because spheres look the same from all sides.
+    The slip of a step is its velocity times the time step [s].
     """
 
     name: str
@@ -74,7 +73,6 @@ class Motion:
     place: Array
     velocity: Array
     spin: Array
-    quaternions: Array | None = None
 
     @property
     def steps(self) -> int:
@@ -84,10 +82,8 @@ class Motion:
     def columns(self) -> dict[str, Array]:
         """By the names of the files."""
         found = {"t": self.time_step * np.arange(self.steps)}
-        shown = {"x": self.place, "q": self.quaternions, "v": self.velocity, "omega": self.spin}
-        for name, values in shown.items():
-            if values is not None:
-                found |= {f"{name}_{side}": values[:, k] for k, side in enumerate("ij")}
+        for name, values in {"x": self.place, "v": self.velocity, "omega": self.spin}.items():
+            found |= {f"{name}_{side}": values[:, k] for k, side in enumerate("ij")}
         return found
 
 
@@ -143,10 +139,11 @@ def unit_normals(motion: Motion) -> Array:
 
 
 def read(path: Path) -> Motion:
-    """The motion of a JSON or CSV file: t [s], x_i, x_j [m], v_i, v_j [m/s], omega_i, omega_j [rad/s], q_i, q_j.
+    """The motion of a JSON or CSV file: t [s], x_i, x_j [m], v_i, v_j [m/s], omega_i, omega_j [rad/s].
 
-    JSON holds lists by these names; a CSV file a line of names, each for its 3 (q: 4, t: 1) columns, with commas or
-    spaces. Other names are passed over, in a CSV file from the first one on. Raises CaseError.
+    JSON holds lists by these names; a CSV file a line of names, each for its 3 (t: 1) columns, with commas or spaces.
+    Orientations q_i, q_j (4 columns) are passed over, as spheres look the same from all sides, and other names, in a
+    CSV file from the first one on. Raises CaseError.
     """
     columns = columns_of(path)
     for name in NEEDED:
@@ -169,10 +166,7 @@ def read(path: Path) -> Motion:
     def both(name: str) -> Array:
         return np.stack([columns[f"{name}_i"], columns[f"{name}_j"]], axis=1)
 
-    quaternions = both("q") if {"q_i", "q_j"} <= set(columns) else None
-    if quaternions is not None and np.abs(np.linalg.norm(quaternions, axis=2) - 1).max() > 1e-6:
-        raise CaseError(f"{path}: q_i, q_j must have the length 1; divide them by theirs")
-    return Motion(path.stem, float(times.mean()), both("x"), both("v"), both("omega"), quaternions)
+    return Motion(path.stem, float(times.mean()), both("x"), both("v"), both("omega"))
 
 
 def columns_of(path: Path) -> dict[str, Array]:
