@@ -145,7 +145,7 @@ def main() -> None:
         outcome = replace(plain, rows=both[0], models=both[1])
         save(chart(outcome), DOCS / "figures", data=False)
         bulk = convergence(YIELDING, scene_engine("liggghts"))
-        for name, table in zip(NAMES, [*tables(outcome, bulk).values(), bed_convergence(YIELDING)], strict=True):
+        for name, table in zip(NAMES, [*tables(outcome).values(), bulk, bed_convergence(YIELDING)], strict=True):
             store(name, table)
     errors, models, *scenes = map(load, NAMES)
     parts = models["model"].str.partition(", ")

@@ -9,7 +9,6 @@ import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
-import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
@@ -25,7 +24,6 @@ from epdem.verification import contacts, cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
 from epdem.verification import measured_data as validate
 from epdem.verification.motion import compare as motions
-from epdem.verification.stability import bulk
 
 STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
@@ -70,7 +68,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "figures": (("verify figures",), {"pictures": "svg", "out": "there", "force": None}),
     "cost of impacts": (
         ("verify cost", "steel.toml"),
-        {"engine": "embedded", "law": "cavity", "repetitions": "2", "bulk": None, "pictures": "svg", "out": "there"}
+        {"engine": "embedded", "law": "cavity", "repetitions": "2", "pictures": "svg", "out": "there"}
         | {"force": None},
     ),
     "stability": (
@@ -120,14 +118,12 @@ def outcomes(tmp_path_factory):
     """A small outcome of each study."""
     path = tmp_path_factory.mktemp("outcomes") / "steel.toml"
     path.write_text(FAST)
-    numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0}
     many = FAST.replace('["1 m/s"]', '{ from = "0.1 m/s", to = "1 m/s", count = 12 }')
     twelve = path.with_name("twelve.toml")
     twelve.write_text(many)
     return {
         "run": impacts_run.run(twelve, engines=[engine("embedded")], out=path.parent / "run"),
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
-        "bulk": pd.DataFrame([{"model": "x", "spheres": 8} | numbers]),
         "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
     }
 
@@ -155,7 +151,6 @@ def library(tmp_path, monkeypatch, outcomes):
     record(motions, "compare")
     record(contacts, "compare")
     record(cost, "run", outcomes["cost"])
-    record(bulk, "convergence", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
     record(figures, "draw_all", [Path("drawn.png")])
     record(sweep_run, "run")

@@ -58,15 +58,12 @@ def chart(outcome: Outcome) -> Chart:
     )
 
 
-def tables(outcome: Outcome, bulk: pd.DataFrame | None) -> dict[str, pd.DataFrame]:
-    """All tables by title; `bulk` is that of a bulk scene, if it ran."""
+def tables(outcome: Outcome) -> dict[str, pd.DataFrame]:
+    """All tables by title."""
     errors = [f"{q}_{kind}" for q in QUANTITIES for kind in ("error", "rms")]
-    found = {
+    return {
         f"{outcome.case.case.title}: errors (max and rms over speeds and phases)": outcome.rows[
             ["model", "steps", *errors, "ns_per_impact"]
         ],
         "coarsest steps for an error of e_n, and their stepping time per impact": outcome.models,
     }
-    if bulk is not None:
-        found[f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy"] = bulk
-    return found

@@ -4,8 +4,6 @@
 from dataclasses import replace
 from pathlib import Path
 
-import pandas as pd
-
 from ..impacts.comparison import UNITS
 from ..report import pages as common
 from ..report.chart import GREY, Axis, Chart, Panel, Series
@@ -44,9 +42,9 @@ def _study_page(title: str, sentence: str, parts: list[Part], *, passed: bool | 
     return Page(title, [sentence], every, passed=passed, command=common.command())
 
 
-def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
+def of_cost(outcome: Cost, folder: Path) -> Path:
     """Write the page of error against run time."""
-    _, *tables = cost_report.tables(outcome, bulk).items()
+    _, *tables = cost_report.tables(outcome).items()
     parts: list[Part] = [cost_report.chart(outcome), *(Rows(title, table) for title, table in tables)]
     parts.append(Rows("Errors and times", outcome.rows, {"ns_per_impact": "ns"}))
     names, steps = ", ".join(outcome.models["model"]), outcome.rows["steps"].nunique()

@@ -83,7 +83,6 @@ def cost(
     engine: Engines = None,
     law: Laws = None,
     repetitions: Annotated[int, typer.Option(min=1, max=100, help="repetitions of every timed run, interleaved")] = 5,
-    bulk: Annotated[bool, typer.Option(help="also find the error of a bulk scene's plastic work in LIGGGHTS")] = False,
     pictures: Formats = None,
     out: Out = None,
     force: Force = False,
@@ -96,19 +95,14 @@ def cost(
     from .. import cost_report
     from ..pages import of_cost
 
-    scene, kinds = None, formats(pictures)
+    kinds = formats(pictures)
     folder = results_folder(out, load(case).name, "cost")
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
-        if bulk:
-            from ...engines import DEFAULT_ENGINE, scene_engine
-            from ..stability.bulk import convergence
-
-            scene = convergence(law or [load(case).law.name], scene_engine(DEFAULT_ENGINE), progress=progress)
         found = study.run(case, engines=engine or [], laws=law or [], repetitions=repetitions, progress=progress)
-        files = [*cost_report.write(found, folder, kinds), of_cost(found, scene, folder)]
+        files = [*cost_report.write(found, folder, kinds), of_cost(found, folder)]
     document = {"case": found.case.name, "seconds": found.seconds, "files": files, "rows": found.rows}
-    document |= {"models": found.models} | ({} if scene is None else {"bulk": scene})
-    tables = [frame_table(title, frame, digits=3) for title, frame in cost_report.tables(found, scene).items()]
+    document |= {"models": found.models}
+    tables = [frame_table(title, frame, digits=3) for title, frame in cost_report.tables(found).items()]
     raise answer(document, [*tables, f"see {folder}/report.html"], as_json)
 
 
