@@ -43,7 +43,7 @@ CASE = {
                 "count": 30,
             }
         ],
-        "phase": [timed("rest", "0.8 s")],
+        "phase": [timed("rest", "0.6 s")],
     },
     "output": {"contacts": 2, "particles": 2, "loads": True, "energy": True},
     "numerics": {"time_step": "5 us"},
@@ -61,7 +61,7 @@ PRESSED["scene"]["phase"] = [
     timed(
         "press", "0.1 s", until={"wall": "lid", "force": f"{PRESS} N", "after": "0 s"}, move=[linear("lid", 0, 0, -0.1)]
     ),
-    timed("rest", "0.4 s"),
+    timed("rest", "0.1 s"),
 ]
 BY_WAY = copy.deepcopy(PRESSED)  # in YADE, as far as the lid goes in LAMMPS
 BY_WAY["scene"]["phase"][1]["until"] = {"wall": "lid", "travel": "9.3 mm"}
