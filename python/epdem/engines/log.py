@@ -57,7 +57,7 @@ def _column(p: ScenePlan, word: str) -> str | None:
     if flow := _HEAT.fullmatch(word):
         return f"{p.heat_flows[int(flow[1])]}_heat_flow"
     loads = {f"{wall}_{load}" for wall in p.measured_walls for load in columns.LOADS}
-    return ROWS.get(word, word if word in {*ROWS.values(), *loads, *p.way_columns} else None)
+    return ROWS.get(word, word if word in {*ROWS.values(), *loads} else None)
 
 
 def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.DataFrame:
@@ -139,11 +139,7 @@ def inserted(log: Path, step: int) -> dict[str, int]:
 
 def loops(log: Path) -> list[tuple[float, int]]:
     """(seconds, steps) of every run in a log, by the engine's own clock."""
-    return loops_in(log.read_text(errors="replace") if log.exists() else "")
-
-
-def loops_in(text: str) -> list[tuple[float, int]]:
-    """(seconds, steps) of every run in a piece of a log."""
+    text = log.read_text(errors="replace") if log.exists() else ""
     return [(float(seconds), int(steps)) for seconds, steps in _LOOP.findall(text)]
 
 
