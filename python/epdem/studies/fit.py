@@ -6,7 +6,6 @@ Every evaluation is a point of a sweep, in its folder: interrupted or repeated, 
 
 import contextlib
 import difflib
-import html
 import math
 import tomllib
 from collections.abc import Mapping
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from ..base.files import results_folder
 from ..base.paths import DEFAULT_ENGINE
@@ -55,10 +55,8 @@ class Fit:
     sweep: study.SweepOutcome
 
     def _repr_html_(self) -> str:
-        cells = [*self.values.items()]
-        cells += [(name, f"{value:.6g} {self.units[name]}") for name, value in self.numbers.items()]
-        rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(v))}</td></tr>" for name, v in cells)
-        return f"<table>{rows}</table>"
+        numbers = {name: f"{value:.6g} {self.units[name]}" for name, value in self.numbers.items()}
+        return str(pd.Series(self.values | numbers).to_frame("found").to_html())
 
 
 class _TargetsMet(Exception):
@@ -93,8 +91,7 @@ class _Search:
             self.ran += self.outcome.ran
             self.found += [self._numbers(sweep, n) for n in range(len(self.found) + 1, len(self.shares) + 1)]
         self.targets = self.targets or {name: self._target(name, text) for name, text in self.given.items()}
-        rows = [[self._error(self.shares.index(s), name) for name in self.targets] for s in asked]
-        return np.array(rows)
+        return np.array([[self._error(self.shares.index(s), name) for name in self.targets] for s in asked])
 
     def _numbers(self, sweep: Sweep, number: int) -> dict[str, float]:
         about = store.record(sweep, self.folder, number)
@@ -215,27 +212,20 @@ def _solve(search: _Search, tolerance: float) -> None:
     options: dict[str, Any] = {"bounds": (0.0, 1.0), "method": "dogbox", "xtol": SMALLEST, "ftol": 1e-4, "gtol": None}
     with contextlib.suppress(_TargetsMet):
         residuals(start)
-        between = [(a, b) for a, b in ((0.0, 0.5), (0.5, 1.0)) if _changes_sign(search, a, b)]
-        if between:
-            brentq(lambda share: residuals(np.array([share]))[0], *between[0], xtol=SMALLEST, maxiter=STEPS, disp=False)
+        if known.shape == (3, 1) and (known[0] * known[1:] < 0).any():  # in the middle and at the ends of one key
+            ends = (0.0, 0.5) if known[0] * known[1] < 0 else (0.5, 1.0)
+            brentq(lambda share: residuals(np.array([share]))[0], *ends, xtol=SMALLEST, maxiter=STEPS, disp=False)
         else:
             least_squares(residuals, start, jacobian, max_nfev=STEPS, **options)
-
-
-def _changes_sign(search: _Search, low: float, high: float) -> bool:
-    if len(search.free) > 1 or len(search.targets) > 1:
-        return False
-    below, above = search([np.array([low]), np.array([high])])[:, 0]
-    return bool(below * above < 0)
 
 
 def _failure_message(search: _Search, values: Point, numbers: dict[str, float]) -> str:
     said = []
     for name, target in search.targets.items():
-        reached = [found[name] for found in search.found]
-        where = "out of reach" if not min(reached) <= target <= max(reached) else "not met"
+        low, high = (f(found[name] for found in search.found) for f in (min, max))
+        how = "not met" if low <= target <= high else "out of reach"
         si = f" {of}" if (of := unit(name, search.base.tables)) else ""
-        said.append(f"{name} = {target:g}{si} is {where}: {min(reached):.4g} to {max(reached):.4g}{si}")
+        said.append(f"{name} = {target:g}{si} is {how}: {low:.4g} to {high:.4g}{si}")
     nearest = ", ".join(f"{name} = {value:.4g}" for name, value in numbers.items())
     where = ", ".join(f"{key} = {value}" for key, value in values.items())
     return (
