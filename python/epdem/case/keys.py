@@ -59,8 +59,9 @@ def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) ->
             for name in {str(n), str(entry.get("name", n)) if isinstance(entry, dict) else str(n)}:
                 yield from _walk(arguments[0], (*place, name), entry, case)
     elif kind is Keys:
-        if model := model_of((data or {}).get("kind")):
-            yield from _fields(model, place, data, case)
+        table = data if isinstance(data, dict) else {}
+        if model := model_of(table.get("kind")):
+            yield from _fields(model, place, table, case)
     elif isinstance(kind, type) and issubclass(kind, BaseModel):
         yield from _fields(kind, place, data if isinstance(data, dict) else {}, case)
     elif kind is not type(None):
