@@ -129,7 +129,7 @@ MISTAKES = {  # words of a call, and what the sentence must hold
     ("export liggghts",): "epdem export liggghts: name a folder by --out or --check",
     ("deck", "own.j2", *CASE, "--set", "1=2"): "must be key=value with a key of letters",
     ("deck", "own.j2", *CASE, "--set", "deck=2"): "this name holds the case's values",
-    ("deck", "own.j2", *CASE, "--set", "a=1", "--set", "a=2"): "is given twice; keep",
+    ("deck", "own.j2", *CASE, "--set", "a=1", "--set", "a=2"): "--set a: given twice; write",
     ("deck", "own.j2", *CASE, "--set", "b=1"): "own.j2 does not use it; check the",
     ("sweep", "steel.toml", "--set", "impact.body.radius"): "--set 'impact.body.radius': write it as --set impact",
     ("sweep", "steel.toml", *SET, *SET): "--set impact.body.radius: given twice; write all its values behind one",

@@ -183,12 +183,13 @@ def deck(
         raise answer({"warnings": found}, found or [f"{file}: nothing found"], as_json, not found)
     if out is None:
         raise CaseError(f"{file}: --out is missing; name a folder for the deck")
+    from ..studies.sweep.points import settings as values_of
+
+    values = values_of(given or [], example="yieldPressure=1e8")
     if convert:
-        from ..studies.sweep.points import settings as values_of
         from ..tools.convert import convert_file
         from ..tools.deck_checks import check_file
 
-        values = values_of(given or [], example="yieldPressure=1e8")
         files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
         print("\n".join([*notes, *check_file(files[0])]), file=sys.stderr)
         raise answer({"files": files}, map(str, files), as_json)
@@ -198,7 +199,7 @@ def deck(
 
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
-        files = fill(file, case, settings(given or []), out, force=force)
+        files = fill(file, case, settings(values), out, force=force)
         raise answer({"files": files}, map(str, files), as_json)
     if cli_scene.is_scene(file):
         refuse_options(file, "a scene has its own law", law=law)

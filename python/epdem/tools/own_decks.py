@@ -40,21 +40,16 @@ def value(text: str) -> int | float | str:
     return text
 
 
-def settings(pairs: list[str]) -> dict[str, int | float | str]:
-    """The values of `--set key=value`. Raises CaseError."""
-    values: dict[str, int | float | str] = {}
-    for pair in pairs:
-        key, equals, text = pair.partition("=")
-        if not equals or not key.isidentifier():
-            raise CaseError(f"--set {pair!r}, must be key=value with a key of letters, digits and underscores")
+def settings(given: Mapping[str, str]) -> dict[str, int | float | str]:
+    """The values of `--set key=value` from texts. Raises CaseError."""
+    for key, text in given.items():
+        if not key.isidentifier():
+            raise CaseError(f"--set {key}, must be key=value with a key of letters, digits and underscores")
         if key in ("deck", "case"):
             raise CaseError(f"--set {key}: this name holds the case's values; choose another")
         if not text.isprintable() or "&" in text:
             raise CaseError(f"--set {key}: {text!r} would begin or join lines of the deck; leave out line ends and '&'")
-        if key in values:
-            raise CaseError(f"--set {key} is given twice; keep one")
-        values[key] = value(text)
-    return values
+    return {key: value(text) for key, text in given.items()}
 
 
 def write(
