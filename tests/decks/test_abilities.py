@@ -86,9 +86,8 @@ def test_a_refusal_names_the_engines_that_take_the_job(name, lacks, changes, oth
 
 def test_a_refusal_of_all_engines_names_none():
     reason = "--steps: three steps"
-    assert (
-        str(refusal(ALL["yade"](), planned()[0], reason, fits=lambda features: False)) == f"{reason}; no engine has it"
-    )
+    found = refusal(ALL["yade"](), planned()[0], reason, fits=lambda features: False)
+    assert str(found) == f"{reason}; no engine has it"
 
 
 @pytest.mark.parametrize(

@@ -106,9 +106,8 @@ def test_the_step_for_an_error_is_found_with_speeds_that_stick():
 
 
 def test_the_law_of_the_case_keeps_its_numbers_if_it_is_named_and_others_have_their_own():
-    case = parse(
-        read_toml(CASE.with_name("steel_wall.toml")) | {"law": {"name": "thornton", "yield_pressure": "3.2 GPa"}}
-    )
+    law = {"name": "thornton", "yield_pressure": "3.2 GPa"}
+    case = parse(read_toml(CASE.with_name("steel_wall.toml")) | {"law": law})
     assert [experiment(case, law).law.parameters["yield_pressure"] for law in (None, "thornton", "johnson")] == [
         pytest.approx(x) for x in (3.2e9, 3.2e9, 3e9)
     ]

@@ -88,9 +88,8 @@ def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
     path = CASES / "impactor_bowl.toml"
     data = read_toml(path)
     scene, plate = data["scene"], {"kind": "plate", "axis": "z", "size": ["9 mm", "9 mm"], "material": "steel"}
-    scene["body"].append(
-        scene["body"][0] | {"name": "held", "phase": "pour", "velocity": ["0 m/s"] * 3, "frozen": True}
-    )
+    held = {"name": "held", "phase": "pour", "velocity": ["0 m/s"] * 3, "frozen": True}
+    scene["body"].append(scene["body"][0] | held)
     del scene["body"][1]["phase"]
     scene["wall"] += [plate | {"name": name, "center": ["0 mm", "0 mm", "25 mm"]} for name in ("lid", "press")]
     scene["wall"].append({"name": "gate", "kind": "plane", "axis": "z", "at": "-9 mm", "material": "steel"})
@@ -107,9 +106,8 @@ def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
 
 
 def test_the_spheres_of_a_file_are_as_stored(tmp_path):
-    (tmp_path / "spheres.csv").write_text(
-        "x,y,z,radius,material,vz\n0,0,0.02,0.001,powder,-1\n0.004,0,0.01,0.0015,powder,0\n"
-    )
+    rows = "x,y,z,radius,material,vz\n0,0,0.02,0.001,powder,-1\n0.004,0,0.01,0.0015,powder,0\n"
+    (tmp_path / "spheres.csv").write_text(rows)
     data = read_toml(CASES / "sieve_cylinder.toml")
     data["scene"]["fill"] = [{"name": "table", "file": str(tmp_path / "spheres.csv")}]
     texts = scene_deck.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
@@ -139,9 +137,8 @@ def test_a_title_cannot_add_a_line_to_a_deck(tmp_path):
     Liggghts().write(replace(p, experiment=x), tmp_path)
     lines = (tmp_path / "in.impact").read_text().splitlines()
     assert lines[:2] == ["# two shell touch pwned", "# joined"]
-    assert (tmp_path / "impact.data").read_text().splitlines()[1] == "" and f"# epdem {__version__}; by hand" in lines[
-        3
-    ]
+    assert (tmp_path / "impact.data").read_text().splitlines()[1] == ""
+    assert f"# epdem {__version__}; by hand" in lines[3]
     Yade().write(replace(p, experiment=replace(x, source="shell\rtouch pwned")), tmp_path)
     head = (tmp_path / "impact.py").read_text().split("\n")
     assert head[:2] == ["# two shell touch pwned", "# shell touch pwned"]

@@ -95,9 +95,8 @@ def test_radii_above_a_metre_are_doubted():
 
 def test_a_friction_in_percent_is_doubted():
     data = scene(**SOUND) | {"contact": {"friction": 30, "pairs": [{"between": ["glass", "glass"], "friction": 5.1}]}}
-    said = [
-        f"contact.{key} = {mu}, usually 0 to 5; percent?" for key, mu in (("friction", 30), ("pairs.0.friction", 5.1))
-    ]
+    values = {"friction": 30, "pairs.0.friction": 5.1}
+    said = [f"contact.{key} = {mu}, usually 0 to 5; percent?" for key, mu in values.items()]
     assert case_warnings(parse_scene(data)) == said
 
 

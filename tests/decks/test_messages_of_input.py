@@ -136,12 +136,8 @@ def test_limits_of_size_place_and_steps(tmp_path, monkeypatch):
         refused(CASE, {"scene.fill": [TABLE]}, "0 MB; name another file", tmp_path)
     with monkeypatch.context() as few:
         few.setattr(placement, "ATTEMPTS", 1)
-        refused(
-            "settle_glass",
-            {"scene.box": ["20 mm"] * 3, "scene.count": 140},
-            "without overlap after 1 attempts",
-            tmp_path,
-        )
+        dense = {"scene.box": ["20 mm"] * 3, "scene.count": 140}
+        refused("settle_glass", dense, "without overlap after 1 attempts", tmp_path)
     monkeypatch.setattr(impacts_plan, "MOST_STEPS", 10)
     refused("settle_glass", {}, "give a larger one, or numerics.time_step", tmp_path)
 

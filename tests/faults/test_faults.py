@@ -75,10 +75,8 @@ def all_turn_red(tests: Runner, found: list[Fault]) -> None:
     """Every named test is green while no fault is switched on, and red with its own."""
     done = tests.run(*sorted({f"tests/{fault.test}" for fault in found}))
     assert done.returncode == 0, done.stdout[-3000:]
-    reds = {
-        fault.name: tests.run(f"tests/{fault.test}", env={"PLANTED": str(n)}).returncode
-        for n, fault in enumerate(found, 1)
-    }
+    codes = [tests.run(f"tests/{fault.test}", env={"PLANTED": str(n)}).returncode for n, fault in enumerate(found, 1)]
+    reds = dict(zip((fault.name for fault in found), codes, strict=True))
     tests.close()
     assert reds == dict.fromkeys(reds, 1), "a test did not fail"
 

@@ -18,11 +18,8 @@ doubles = st.one_of(
     st.sampled_from([0.0, -1.0, 5e-324, 1.7e308, float("nan"), float("inf")]),
 )
 GUARD = 8
-SIZES = {
-    "epdem_step_result": 3 * 8,
-    "epdem_impact_input": IMPACT_INPUT.itemsize,
-    "epdem_impact_output": IMPACT_OUTPUT.itemsize,
-}
+SIZES = {"epdem_step_result": 3 * 8, "epdem_impact_input": IMPACT_INPUT.itemsize}
+SIZES["epdem_impact_output"] = IMPACT_OUTPUT.itemsize
 
 
 def pointer(array: np.ndarray):

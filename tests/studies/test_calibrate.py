@@ -185,9 +185,8 @@ def test_the_scatter_of_three_or_more_restitutions_gives_their_uncertainty(tmp_p
     assert f"scatter of e_n about the fit {scatter:.2g}, to be compared" in summary(free)[0]
     given = from_restitutions(path, noisy, scatter)
     assert "scatter" not in summary(given)[0]
-    assert free.standard_errors == pytest.approx(given.standard_errors, rel=1e-3) and free.value == pytest.approx(
-        given.value
-    )
+    assert free.standard_errors == pytest.approx(given.standard_errors, rel=1e-3)
+    assert free.value == pytest.approx(given.value)
 
 
 def test_the_command_takes_several_restitutions_or_those_of_the_case(tmp_path):
@@ -202,9 +201,7 @@ def test_the_command_takes_several_restitutions_or_those_of_the_case(tmp_path):
     found = json.loads(many.stdout)
     assert found["value"] == pytest.approx(1.2e9) and found["hardening_exponent"] == pytest.approx(0.25)
     (low, high), (least, most) = found["intervals"]
-    said = (
-        f"1200 MPa ({low / 1e6:.4g} to {high / 1e6:.4g} MPa), hardening_exponent = 0.25 ({least:.3g} to {most:.3g}); "
-    )
+    said = f"1200 MPa ({low / 1e6:.4g} to {high / 1e6:.4g} MPa), hardening_exponent = 0.25 ({least:.3g} to {most:.3g})"
     assert said in " ".join(curve.stdout.split())
 
 
@@ -236,9 +233,8 @@ def test_intervals_of_a_known_uncertainty_are_those_of_a_normal_distribution(tmp
         expected = min(found.hardening_exponent + k * found.standard_errors[1], 1.0)
         assert most == pytest.approx(expected, abs=2e-3)
         sentence = summary(found)[0]
-        assert (
-            f"95 % confidence intervals, {said}" in sentence and f"{low / 1e6:.4g} to {high / 1e6:.4g} MPa" in sentence
-        )
+        for part in (f"95 % confidence intervals, {said}", f"{low / 1e6:.4g} to {high / 1e6:.4g} MPa"):
+            assert part in sentence
 
 
 def test_a_metal_that_hardly_hardens_is_calibrated_where_noise_lets_e_n_fall_faster_than_without_hardening(tmp_path):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sweep runs, stores, resumes and fails point by point; what is finished never runs again."""
 
+import functools
 import json
 import os
 import random
@@ -284,9 +285,8 @@ def test_calls_for_some_points_work_side_by_side_and_a_whole_call_finds_them_don
     """Three at once in a new folder, as tasks of an array: each says by its exit code how its points ended."""
     out, radii = tmp_path / "out", "1 mm,2 mm,4 mm,5 mm"
     words = ["sweep", str(case), "-e", "embedded", "-o", str(out), "--set", f"impact.body.radius={radii}", "--json"]
-    calls = {
-        only: subprocess.Popen([EPDEM, *words, "--only", only], stdout=subprocess.PIPE) for only in ("2", "3-4,3", "1")
-    }
+    begin = functools.partial(subprocess.Popen, stdout=subprocess.PIPE)
+    calls = {only: begin([EPDEM, *words, "--only", only]) for only in ("2", "3-4,3", "1")}
     said = {only: json.loads(process.communicate(timeout=120)[0]) for only, process in calls.items()}
     assert {only: (x["ran"], x["done"], x["failed"]) for only, x in said.items()} == {
         "1": (1, 1, 0),
@@ -365,10 +365,8 @@ def test_the_page_shows_e_n_over_the_keys_that_were_swept(tmp_path):
         {"law.yield_pressure": "1 GPa..3 GPa:3"} | {"materials.steel.density": "7000 kg/m^3,8000 kg/m^3"},
     )
     over_pressure, over_density = restitution(found)
-    assert [str(chart.panels[0].x) for chart in (over_pressure, over_density)] == [
-        "yield_pressure [Pa]",
-        "density [kg/m^3]",
-    ]
+    axes = [str(chart.panels[0].x) for chart in (over_pressure, over_density)]
+    assert axes == ["yield_pressure [Pa]", "density [kg/m^3]"]
     lines = [s for s in over_pressure.panels[0].series if s.dash]
     points = [s for s in over_pressure.panels[0].series if not s.dash]
     assert len(lines) == len(points) == 2 and len({(s.colour, s.dash) for s in lines}) == 2

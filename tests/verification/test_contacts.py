@@ -128,10 +128,8 @@ def test_lammps_passes(tmp_path):
 @pytest.mark.parametrize("name", ["3_ten_times_yield", "4_hundred_times_yield"])
 def test_hertz_of_lammps_fails(name, tmp_path):
     test = contacts.read_test(FILES[name])
-    own = {
-        "pair_style": "granular",
-        "pair_coeff": "* * hertz/material ${emod} 0.0 ${poisson} tangential linear_nohistory 0 0",
-    }
+    words = "* * hertz/material ${emod} 0.0 ${poisson} tangential linear_nohistory 0 0"
+    own = {"pair_style": "granular", "pair_coeff": words}
     found = contacts.dynamic_errors(replace(test, keys=test.keys | own), tmp_path)
     assert found["e_n"][0] > 0.5 and found["velocity"][0] > 0.5  # it rebounds without loss
     shown = float(re.search(r"tests 3 and 4 .*\| ([\d.]+), ([\d.]+): fails", PAGE)[1 + (name[0] == "4")])

@@ -45,14 +45,7 @@ def force(d, top, d_y):
     most, G = A / 2, E_EFF * (1 - NU) / 2
     z = R - (top - most)
     slant = math.hypot(a, z)
-    rise = (
-        (2 * a * a * (NU - 1) - (2 * NU - 1) * z * (slant - z))
-        * math.pi
-        * a
-        * a
-        * p
-        / (2 * math.pi * a * a * G * slant)
-    )
+    rise = (2 * a * a * (NU - 1) - (2 * NU - 1) * z * (slant - z)) * p / (2 * G * slant)
     return indenter((d - top + most + rise) / (1 + rise / most), A, B)
 
 
