@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from test_adhesion_impacts import GAMMA, E, M, R, adhesive_work, law_of
+from test_adhesion_impacts import E, M, R, adhesive_work, law_of
 
 from epdem.theory import adhesion, restitution
 from epdem.theory.backbones import Hertz, Thornton
@@ -58,19 +58,6 @@ def test_without_adhesion_an_impact_is_that_of_hertz_and_thornton():
             scale = y.work_in if name == "plastic_work" else y.overlap_max if name == "residual_overlap" else scale
             assert np.all(np.abs(getattr(x, name) - getattr(y, name)) <= 1e-11 * scale), name
         assert np.all(adhesive_work(law, x) == 0)
-
-
-@pytest.mark.parametrize("softer", [1e-3, 0.1])
-def test_softening_by_powers_keeps_the_restitution_at_every_speed(softer):
-    """W_s ~ (Gamma^5/E*^2)^(1/3) keeps its value if Gamma ~ E*^(2/5), e_n(V) if also p_y ~ E*^(4/5)."""
-    speed = V_S * np.geomspace(0.5, 1e4, 50)
-    for p_y in (3.04e9, 1e9, 0.5e9, 0.1e9):
-        soft = ThorntonNing(E_star=E * softer, R_star=R, Gamma=GAMMA * softer**0.4, p_y=p_y * softer**0.8)
-        stiff = law_of(p_y)
-        here, there = (adhesion.e_n(law, m_star=M, speed=speed) for law in (stiff, soft))
-        assert there**2 == pytest.approx(here**2, abs=1e-12)
-        V_s = [float(adhesion.sticking_speed(law, m_star=M)) for law in (stiff, soft)]
-        assert V_s[1] == pytest.approx(V_s[0], rel=1e-12)
 
 
 def test_arrays_of_contacts_are_their_scalars():
