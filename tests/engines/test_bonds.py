@@ -15,6 +15,7 @@ from bed_lattices import distance_at, isotropic_pressure
 from dense_lattices import LATTICES
 from epdem.theory.cavity import Cavity
 from epdem.theory.pair import E_star
+from marks import thorough
 
 R, SPEED, STRENGTH = 1e-3, 3.0, 20e6
 POWDER = {"E": 10e9, "nu": 0.3, "density": 8000.0, "yieldStress": 50e6}
@@ -107,7 +108,9 @@ def test_the_hosts_and_both_loops_of_liggghts_agree(other, tmp_path):
 
 
 @needs_lammps
-@pytest.mark.parametrize(("name", "density"), [("sc", 0.6), ("sc", 0.8), ("fcc", 0.85), ("fcc", 0.92), ("hex", 0.7)])
+@pytest.mark.parametrize(
+    ("name", "density"), [("sc", 0.6), thorough("sc", 0.8), thorough("fcc", 0.85), ("fcc", 0.92), thorough("hex", 0.7)]
+)
 def test_a_lattice_breaks_on_the_line_of_rumpf(name, density, tmp_path):
     """Pressed, released and pulled on all sides: z F d/(6 V) of F = strength pi a^2 of every contact (Rumpf 1970); a of
     the same lattice in numpy, growth in."""

@@ -14,6 +14,7 @@ import oblique
 from epdem.theory import adhesion, backbones, pair, partial_slip, restitution
 from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
+from marks import thorough
 
 every_host = pytest.mark.parametrize("host", HOSTS)
 every_law = pytest.mark.parametrize(("host", "law"), on(HOSTS, LAWS))
@@ -156,7 +157,7 @@ def wandering(depth):
 
 @pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS])
 @pytest.mark.parametrize("tangential", ["partial_slip", "partial_slip_2"])
-@pytest.mark.parametrize("e", [None, 0.5, 0.2])
+@pytest.mark.parametrize("e", [None, thorough(0.5), 0.2])
 @pytest.mark.parametrize("law", ["thornton", "cavity"])
 def test_on_wandering_paths_partial_slip_is_passive_and_never_above_coulombs_limit(law, e, tangential, host, tmp_path):
     """60 spheres that load, unload, part and slide. Work by the trapezoid rule."""

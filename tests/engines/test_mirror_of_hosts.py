@@ -36,7 +36,7 @@ def images(law, viscous):
     sphere = {"E": 30 * Y, "nu": 0.2, "density": 1e6} | LAWS[law]
     rigid = {key: value * OF_PLANE.get(key, 1.0) for key, value in sphere.items()}
     same = {"law": law.split(",")[0], "materials": [sphere, rigid], "compaction": "compaction" in law}
-    same |= {"dt": 0.005, "steps": 1000, "restitution": 0.7 if viscous else None}
+    same |= {"dt": 0.005, "steps": 1000, "every": 5, "restitution": 0.7 if viscous else None}
     x, v = HEAP if "compaction" in law else ALONE
     flip = [1.0, 1.0, -1.0]
     whole = Scene(x=np.concatenate([x, x * flip]), v=np.concatenate([v, v * flip]), **same)
