@@ -88,15 +88,6 @@ def test_beside_another_style_a_wall_needs_the_materials_of_its_group(late, sent
         assert z[0] == z[1] > 0.0099 > z[2]
 
 
-def test_a_region_is_the_plane(tmp_path):
-    region = "region walls block INF INF INF INF 0 0.02 units box\n"
-    other = WALLS.replace("wall/ep zplane 0 0.02", "wall/ep/region walls")
-    assert other != WALLS
-    planes, a = run(bed(boundary="p p f", more=WALLS) + "run 500\n" + DUMP, tmp_path / "planes")
-    regions, b = run(bed(boundary="p p f", more=region + other) + "run 500\n" + DUMP, tmp_path / "regions")
-    assert np.abs(a - b).max() <= 1e-9 * np.abs(a).max()
-
-
 def test_a_region_that_moves_takes_a_sphere_along(tmp_path):
     """A plane that rises at 1 m/s hits a sphere at rest: elastic, so the sphere leaves at 2 m/s."""
     deck = """
