@@ -11,9 +11,9 @@ import subprocess
 import numpy as np
 import pytest
 from lammps_decks import column, needs_lammps, run
+from triangles import cube, written
 
 from epdem.engines.lammps import launcher
-from epdem.scenes.plan.meshes import box, stl_text
 
 pytestmark = needs_lammps
 
@@ -71,11 +71,7 @@ run 2000
 
 @pytest.mark.parametrize("what", WALLS)
 def test_candidates_give_the_bits_of_all_spheres(what, tmp_path):
-    for folder in (tmp_path / "some", tmp_path / "all"):
-        folder.mkdir()
-        (folder / "box.stl").write_text(stl_text("box", box((-0.014, 0.014, -0.014, 0.014, -0.014, 0.014))))
-    some, _ = run(deck(WALLS[what], 0), tmp_path / "some")
-    every, _ = run(deck(WALLS[what], 1), tmp_path / "all")
+    some, every = (run(deck(WALLS[what], k), written(tmp_path / str(k), cube(0.014, 1), "box"))[0] for k in (0, 1))
     forces = np.array([column(every, f"f_w[{axis}]") for axis in (1, 2, 3)])
     assert np.count_nonzero(np.abs(forces).max(axis=0)) > 10, "too few impacts"
     for value in ("f_w[1]", "f_w[2]", "f_w[3]", "KinEng"):
@@ -85,11 +81,8 @@ def test_candidates_give_the_bits_of_all_spheres(what, tmp_path):
 def test_triangles_that_move_give_the_same_forces_on_two_ranks(tmp_path):
     found = []
     for ranks in (1, 2):
-        folder = tmp_path / str(ranks)
-        folder.mkdir()
-        (folder / "box.stl").write_text(stl_text("box", box((-0.014, 0.014, -0.014, 0.014, -0.014, 0.014))))
         text = deck(WALLS["triangles that move"], 0).replace("run 2000", "run 800")
-        found.append(run(text, folder, ranks=ranks)[0])
+        found.append(run(text, written(tmp_path / str(ranks), cube(0.014, 1), "box"), ranks=ranks)[0])
     for value in ("f_w[1]", "f_w[2]", "f_w[3]", "KinEng"):
         one, two = (column(out, value) for out in found)
         assert np.abs(one - two).max() <= 1e-9 * np.abs(one).max() > 0, value

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 from lammps_decks import DUMP, column, lammps, needs_lammps, run, spheres
-from triangles import fold, tiles
+from triangles import fold, tiles, written
 
 from epdem.scenes.plan.meshes import box, stl_text
 
@@ -28,14 +28,12 @@ def rebounds(wall, start, velocity, steps, law=FRICTION, more=""):
 def test_a_box_of_1200_triangles_gives_the_rebounds_of_a_block(tmp_path):
     """Three rebounds, with friction: position, velocity and spin."""
     limits = (-0.03, 0.05, -0.04, 0.06, -0.05, 0.05)
-    folder = tmp_path / "mesh"
-    folder.mkdir()
     faces = []
     for face in (rectangle for k in range(0, 12, 2) for rectangle in [box(limits)[k]]):
         corner, one, other = face[0], face[1] - face[0], face[2] - face[1]
         faces += [[corner + a * one + b * other for a, b, _ in triangle] for triangle in tiles((0, 1), (0, 1), 10, 10)]
     assert len(faces) == 1200
-    (folder / "box.stl").write_text(stl_text("box", np.array(faces)))
+    folder = written(tmp_path / "mesh", faces, "box")
     region = f"region b block {' '.join(map(str, limits))} units box\nfix w all wall/ep/region b {HARD}\n"
     words = ((0.0, 0.0, 0.0), "4.3 -3.1 -2.2", 60000, HARD)
     out, (block,) = run(rebounds(region, *words), tmp_path / "block")
@@ -48,9 +46,7 @@ def test_a_box_of_1200_triangles_gives_the_rebounds_of_a_block(tmp_path):
 
 def test_a_sphere_rolls_over_tiles_as_over_a_plane(tmp_path):
     """It slides first, then rolls over 60 edges and corners."""
-    folder = tmp_path / "mesh"
-    folder.mkdir()
-    (folder / "floor.stl").write_text(stl_text("floor", tiles((-0.06, 0.06), (-0.02, 0.02), 60, 20)))
+    folder = written(tmp_path / "mesh", tiles((-0.06, 0.06), (-0.02, 0.02), 60, 20), "floor")
     fall = "fix fall all gravity 9.81 vector 0 0 -1\n"
     words = ((-0.05, 0.0, 0.99999 * R), "1 0.02 0", 60000, FRICTION, fall)
     _, (plane,) = run(rebounds(f"fix w all wall/ep zplane 0 NULL {FRICTION}\n", *words), tmp_path / "plane")
@@ -66,7 +62,7 @@ def test_no_force_acts_past_a_ledge(tmp_path):
     low = -0.035
     riser = [[(0, -0.05, 0), (0, 0.05, 0), (0, 0.05, low)], [(0, -0.05, 0), (0, 0.05, low), (0, -0.05, low)]]
     step = [*tiles((-0.05, 0), (-0.05, 0.05), 3, 3), *riser, *tiles((0, 0.05), (-0.05, 0.05), 3, 3, low)]
-    (tmp_path / "step.stl").write_text(stl_text("step", np.array(step)))
+    written(tmp_path, step, "step")
     wall = f"fix w all wall/ep mesh step.stl {FRICTION}\n"
     out, ((_, x, _, z, *_),) = run(rebounds(wall, (1.001 * R, 0.0, 0.9 * R), "0 0 -1", 40000), tmp_path)
     assert x == 1.001 * R and not column(out, "f_w[1]").any()
@@ -85,7 +81,7 @@ SIDES = (-0.06, 0.04)  # of a fold
 def test_a_concave_fold_conserves_energy(degrees, speed, tmp_path):
     """Elastic spheres that hit beside a fold, obliquely: one contact up to 20 degrees, two above."""
     angle = np.radians(degrees)
-    (tmp_path / "fold.stl").write_text(stl_text("fold", np.array(fold(angle, SIDES, (-0.5, 0.5)))))
+    written(tmp_path, fold(angle, SIDES, (-0.5, 0.5)), "fold")
     law = "hertz 1e8 0.3"
     starts = [(x, 0.03 * (k - 9.5)) for k, x in enumerate(np.linspace(-0.25, 0.05, 20).tolist())]
     heights = [1.00001 * max(1.0, (1 + x * float(np.sin(angle))) / float(np.cos(angle))) for x, _ in starts]
@@ -101,7 +97,7 @@ def test_a_concave_fold_conserves_energy(degrees, speed, tmp_path):
 
 def test_a_corner_has_a_contact_with_each_of_its_faces(tmp_path):
     faces = box((-0.05, 0.05, -0.05, 0.05, -0.05, 0.05))
-    (tmp_path / "box.stl").write_text(stl_text("box", faces))
+    written(tmp_path, faces, "box")
     at = -0.05 + 0.999 * R
     out, _ = run(rebounds(f"fix w all wall/ep mesh box.stl {FRICTION}\n", (at, at, at), "0 0 0", 0), tmp_path)
     plane, _ = run(
@@ -121,10 +117,8 @@ def test_a_sphere_crosses_a_periodic_face_as_the_middle_of_the_box(ranks, tmp_pa
     post = np.array([[(0, -0.1, 0), (0, 0.1, 0), (0, 0.1, 0.03)], [(0, -0.1, 0), (0, 0.1, 0.03), (0, -0.1, 0.03)]])
     found = []
     for name, start, at in (("face", (0.06, 0.09), -0.095), ("middle", (-0.07, -0.03), -0.025)):
-        folder = tmp_path / name
-        folder.mkdir()
         wall = [*tiles(*ROOM, 40, 40), *(post + np.array([at, 0.0, 0.0]))]
-        (folder / "f.stl").write_text(stl_text("f", np.array(wall)))
+        folder = written(tmp_path / name, wall)
         fall = "fix fall all gravity 300 vector 0 0 -1\n"
         text = rebounds(f"fix w all wall/ep mesh f.stl {FRICTION}\n", (*start, R), "2 1 0", 40000, FRICTION, fall)
         _, (row,) = run(text.replace("boundary f f f", PERIODIC), folder, ranks=ranks)
@@ -137,9 +131,7 @@ def test_a_sphere_crosses_a_periodic_face_as_the_middle_of_the_box(ranks, tmp_pa
 
 
 def test_a_periodic_floor_moves_by_periods_as_an_endless_one(tmp_path):
-    folder = tmp_path / "mesh"
-    folder.mkdir()
-    (folder / "f.stl").write_text(stl_text("f", tiles(*ROOM, 4, 4)))
+    folder = written(tmp_path / "mesh", tiles(*ROOM, 4, 4))
     move = "move v_x NULL NULL"
     region = f"region b block INF INF INF INF -0.01 0 side out {move} units box\nfix w all wall/ep/region b {HARD}\n"
     fall = "fix fall all gravity 9.81 vector 0 0 -1\n"
@@ -169,9 +161,7 @@ def test_a_box_of_triangles_moves_as_a_block(kind, ranks, tmp_path):
     """Force, torque, power, and a sphere that the box throws about."""
     variables, motion = MOTIONS[kind]
     limits = (-0.02, 0.025, -0.022, 0.021, -0.018, 0.02)
-    folder = tmp_path / "mesh"
-    folder.mkdir()
-    (folder / "box.stl").write_text(stl_text("box", box(limits)))
+    folder = written(tmp_path / "mesh", box(limits), "box")
     region = f"region b block {' '.join(map(str, limits))} {motion} units box\nfix w all wall/ep/region b {FRICTION}\n"
     mesh = f"fix w all wall/ep mesh box.stl {motion} {FRICTION}\n"
     words = ((0.001, 0.002, 0.003), "0.9 -0.6 0.4", 30000)
@@ -210,35 +200,30 @@ def test_a_binary_file_and_a_text_in_capitals_are_read(tmp_path):
     assert all(np.array_equal(found[0], rows) for rows in found[1:])
 
 
-TEXT = stl_text("f", FLOOR)
-FAULTS = {
-    "no such file": (None, "file f.stl: the file cannot be read"),
-    "cut": (binary(FLOOR, 9), "not an STL file: 484 bytes, where the 9 triangles of its header have 534"),
-    "not a number": (binary(FLOOR * [[[1, 1, np.nan]]]), "triangle 1 has corners that are not numbers"),
-    "a word": (TEXT.replace("vertex 0", "vertex o", 1).encode(), "a vertex needs three numbers"),
-    "two corners": (TEXT.replace("  vertex", "  corner", 1).encode(), "line 8: the triangle has not three corners"),
-    "half": (TEXT[: len(TEXT) // 2].encode(), "the text ends within a triangle"),
-    "none": (b"solid facet\nendsolid\n", "there are no triangles"),
-    "flat": (
-        stl_text("f", np.array([[[0, 0, 0], [1, 1, 0], [2, 2, 1e-9]]])).encode(),
-        "triangle 1 at (0, 0, 0) has no area",
-    ),
+TEXT = stl_text("f", FLOOR).encode()
+FLAT = stl_text("f", np.array([[[0, 0, 0], [1, 1, 0], [2, 2, 1e-9]]])).encode()
+REFUSED = {  # file, words of the wall, sentence
+    "no such file": (b"", FRICTION, "file f.stl: the file cannot be read"),
+    "cut": (binary(FLOOR, 9), FRICTION, "not an STL file: 484 bytes, where the 9 triangles of its header have 534"),
+    "not a number": (binary(FLOOR * [[[1, 1, np.nan]]]), FRICTION, "triangle 1 has corners that are not numbers"),
+    "a word": (TEXT.replace(b"vertex 0", b"vertex o", 1), FRICTION, "a vertex needs three numbers"),
+    "two corners": (TEXT.replace(b"  vertex", b"  corner", 1), FRICTION, "line 8: the triangle has not three corners"),
+    "half": (TEXT[: len(TEXT) // 2], FRICTION, "the text ends within a triangle"),
+    "none": (b"solid facet\nendsolid\n", FRICTION, "there are no triangles"),
+    "flat": (FLAT, FRICTION, "triangle 1 at (0, 0, 0) has no area"),
+    "no law": (TEXT, "move NULL NULL NULL", "the law is missing behind move"),
+    "wear": (TEXT, "wear 0 hertz 1e8 0.3", "wear 0 must be a number above zero"),
 }
 
 
-@pytest.mark.parametrize("what", FAULTS)
-def test_a_damaged_file_is_one_sentence(what, tmp_path):
-    raw, sentence = FAULTS[what]
-    if raw is not None:
+@pytest.mark.parametrize("what", REFUSED)
+def test_a_damaged_file_and_wrong_words_are_one_sentence(what, tmp_path):
+    raw, words, sentence = REFUSED[what]
+    if raw:
         (tmp_path / "f.stl").write_bytes(raw)
-    code, out = lammps(rebounds(f"fix w all wall/ep mesh f.stl {FRICTION}\n", (0, 0, R), "0 0 0", 0), tmp_path)
-    assert code != 0 and "fix w wall/ep mesh: file f.stl: " in out and sentence in out, out[-500:]
-
-
-def test_a_wall_without_a_law_is_one_sentence(tmp_path):
-    (tmp_path / "f.stl").write_text(TEXT)
-    code, out = lammps(rebounds("fix w all wall/ep mesh f.stl move NULL NULL NULL\n", (0, 0, R), "0 0 0", 0), tmp_path)
-    assert code != 0 and "the law is missing behind move" in out
+    code, out = lammps(rebounds(f"fix w all wall/ep mesh f.stl {words}\n", (0, 0, R), "0 0 0", 0), tmp_path)
+    assert code != 0 and "fix w wall/ep mesh: " + "file f.stl: " * (words == FRICTION) in out, out[-500:]
+    assert sentence in out, out[-500:]
 
 
 WEAR = 1e-9  # of Finnie's law [m^2/N]
@@ -270,7 +255,7 @@ def finnie(along, fall, mass):
 def test_an_impact_wears_by_the_integral_of_finnies_law(fall, digits, tmp_path):
     """Below 18 degrees, and beyond, where LIGGGHTS and the plugin have 0.33333 for 1/3. The error is of first order in
     the time step, so that two steps give its limit."""
-    (tmp_path / "f.stl").write_text(TEXT)
+    (tmp_path / "f.stl").write_bytes(TEXT)
     law, found = "hertz 1e8 0.3", []
     for steps in (4000, 8000):
         duration = 4e-3 / (1 + fall) ** 0.2
@@ -288,7 +273,7 @@ def test_an_impact_wears_by_the_integral_of_finnies_law(fall, digits, tmp_path):
 
 def test_the_stress_of_a_triangle_that_turns_has_its_normal(tmp_path):
     """A ramp under a sphere at rest, turned by 30 degrees: without friction the force lies along the normal."""
-    (tmp_path / "f.stl").write_text(stl_text("f", tiles((-0.06, 0.06), (-0.06, 0.06), 1, 1)))
+    written(tmp_path, tiles((-0.06, 0.06), (-0.06, 0.06), 1, 1))
     law, angle = "hertz 1e8 0.3", np.pi / 6
     place = 0.999 * R * np.array([0.0, -np.sin(angle), np.cos(angle)]) + np.array([0.02, 0.0, 0.0])
     wall = f"variable t equal {angle!r}\nfix w all wall/ep mesh f.stl rotate v_t 0 0 0 1 0 0 {law}\n"
@@ -306,7 +291,7 @@ def test_the_stress_of_a_triangle_that_turns_has_its_normal(tmp_path):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_wear_goes_on_after_a_restart_to_the_bit_and_is_the_sum_over_ranks(ranks, tmp_path):
-    (tmp_path / "f.stl").write_text(TEXT)
+    (tmp_path / "f.stl").write_bytes(TEXT)
     places = [(x, y, 0.9999 * R) for x in (-0.05, -0.015, 0.02, 0.055) for y in (-0.03, 0.031)]
     wall = "variable t equal 3*step*dt\nvariable x equal 0.2*step*dt\nfix w all wall/ep mesh ../f.stl "
     wall += f"move v_x NULL NULL rotate v_t 0 0 0 0 0 1 wear {WEAR} {FRICTION}\nfix motion all nve/sphere\n"
@@ -321,9 +306,3 @@ def test_wear_goes_on_after_a_restart_to_the_bit_and_is_the_sum_over_ranks(ranks
     assert np.array_equal(triangles(tmp_path / "again", 600), whole)
     alone = triangles(tmp_path / "one", 600)
     assert (np.abs(whole - alone) <= 1e-9 * alone.max(axis=0)).all()
-
-
-def test_a_constant_of_wear_that_is_none_is_one_sentence(tmp_path):
-    (tmp_path / "f.stl").write_text(TEXT)
-    code, out = lammps(rebounds("fix w all wall/ep mesh f.stl wear 0 hertz 1e8 0.3\n", (0, 0, R), "0 0 0", 0), tmp_path)
-    assert code != 0 and "wear 0 must be a number above zero" in out

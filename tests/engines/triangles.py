@@ -34,3 +34,10 @@ def cube(half, cells):
 def plate(x=(-0.1, 0.1), y=(-0.1, 0.1), cells=1):
     """STL text of a plate at z = 0, `cells` x `cells` rectangles of two triangles."""
     return stl_text("plate", tiles(x, y, cells, cells))
+
+
+def written(folder, triangles, name="f"):
+    """A folder with the triangles in the file NAME.stl."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.stl").write_text(stl_text(name, np.asarray(triangles)))
+    return folder
