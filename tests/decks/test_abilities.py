@@ -30,7 +30,7 @@ def planned(changes=None, law=None):
     changes = dict(changes or {})
     if (viscous := changes.pop("viscous", None)) is not None:
         data["viscous"] = {"restitution": viscous}
-    data["impact"] |= changes
+    data["impact"] |= {"speeds": ["1 m/s", "5 m/s"]} | changes
     data |= {"contact": {"friction": 0.3}} if "angles" in changes else {}
     x = experiment(parse(data, "test"), law)
     prediction = predict(x)

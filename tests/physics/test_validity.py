@@ -97,8 +97,9 @@ def test_finite_strain_overestimates_the_restitution_of_the_same_branch_as_its_w
     Y, E_star = 1e9, ratio * 1e9 / (1 - 0.3**2)
     law = Cavity(E_star=E_star, R_star=0.01, Y=Y, c_strain=0.82, share=1.0)
     v_y0 = yielding.yield_speed(p_y=1.6 * Y, E_star=E_star, R_star=0.01, m_star=M)
-    hits = restitution.impact(law, m_star=M, speed=v_y0 * np.geomspace(20, 2e4, 2000))
-    over = hits.e_n / (0.62 * (np.geomspace(20, 2e4, 2000) * Y / E_star) ** -0.5)
+    ratios = np.geomspace(20, 2e4, 200)
+    hits = restitution.impact(law, m_star=M, speed=v_y0 * ratios)
+    over = hits.e_n / (0.62 * (ratios * Y / E_star) ** -0.5)
     assert round(100 * (np.interp(at, hits.radius_max / 0.01, over) - 1)) == pytest.approx(percent, abs=0.6)
     assert "by 6 to 8 % at 0.3 and by 20 % at 0.5" in validity.SOFTENED
 
