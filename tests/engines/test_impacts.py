@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 from hosts import CASES, EMBEDDED, LIGGGHTS, TARGETS, prepared, run
 
+from cli.calls import call
 from epdem.case.impact import Check
 from epdem.engines import engine
 from epdem.impacts import store
@@ -55,14 +56,17 @@ def test_a_wrong_modulus_is_seen_although_restitution_may_be_right(tmp_path):
     assert not rows["passed"].any()
 
 
-def epdem(*words, cwd):
-    return subprocess.run([sys.executable, "-m", "epdem", *words], cwd=cwd, capture_output=True, text=True, timeout=300)
+@pytest.fixture
+def epdem(tmp_path, monkeypatch, capsys):
+    """The command in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return lambda *words: call(words, capsys, monkeypatch)
 
 
-def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):
-    done = epdem("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "--json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    document = json.loads(done.stdout)
+def test_run_json_prints_one_document_with_the_promised_keys(epdem):
+    done = epdem("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "--json")
+    assert done.code == 0, done.err
+    document = json.loads(done.out)
     assert document["yields"] == {"thornton": ["steel"]}
     assert {"case", "passed", "seconds", "rows"} <= document.keys() and len(document["rows"]) == 32
     keys = {"engine", "law", "speed", "energy_residual", "steps_in_contact"}
@@ -72,15 +76,15 @@ def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):
 
 
 @pytest.mark.figures
-def test_results_open_as_data_frames_and_a_second_run_takes_them_from_the_store(tmp_path):
+def test_results_open_as_data_frames_and_a_second_run_takes_them_from_the_store(epdem, tmp_path):
     words = ("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-o", "out")
-    assert epdem(*words, cwd=tmp_path).returncode == 0
+    assert epdem(*words).code == 0
     found = store.read(tmp_path / "out/results.h5")
     assert isinstance(found.comparison, pd.DataFrame) and len(found.impacts["thornton/embedded"]) == 256
     assert found.case_text == (CASES / "steel_wall.toml").read_text()
     written = pd.read_csv(tmp_path / "out/results.csv")
     assert np.array_equal(written["e_n"], found.comparison["e_n"])
-    assert "1 of 1 from" in epdem(*words, cwd=tmp_path).stdout
+    assert "1 of 1 from" in epdem(*words).out
     assert (tmp_path / "out/e_n.png").stat().st_size > 10_000
     for fresh, reused in ((False, ["thornton/embedded"]), (True, [])):
         again = run_case(CASES / "steel_wall.toml", engines=[engine("embedded")], out=tmp_path / "out", fresh=fresh)
@@ -97,11 +101,11 @@ def test_a_run_with_another_law_keeps_what_is_stored(tmp_path):
     assert len(found.comparison) == 64 and run_with().reused == ["thornton/embedded"]
 
 
-def test_a_failed_check_exits_with_1(tmp_path):
+def test_a_failed_check_exits_with_1(epdem, tmp_path):
     text = (CASES / "steel_wall.toml").read_text().replace("e_n = 1e-4", "e_n = 1e-9")
     text = re.sub("^speeds = .*$", 'speeds = ["5 m/s"]', text, flags=re.M)
     (tmp_path / "strict.toml").write_text(text)
-    assert epdem("run", "strict.toml", "-e", "embedded", cwd=tmp_path).returncode == 1
+    assert epdem("run", "strict.toml", "-e", "embedded").code == 1
 
 
 @pytest.mark.liggghts
@@ -110,7 +114,8 @@ def test_an_engine_that_dies_exits_with_3_and_gives_its_last_words(tmp_path, mon
     broken.write_text("#!/bin/sh\n[ \"$1\" = -h ] && exit 0\necho 'ERROR: lost my atoms (../pair.cpp:1)'\nexit 1\n")
     broken.chmod(0o755)
     monkeypatch.setenv("EPDEM_LIGGGHTS", str(broken))
-    done = epdem("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "liggghts", cwd=tmp_path)
+    words = [sys.executable, "-m", "epdem", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "liggghts"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert done.returncode == 3 and "ERROR: lost my atoms" in done.stderr
     assert set(store.read(tmp_path / "runs/steel_wall/results.h5").impacts) == {"thornton/embedded"}  # nothing lost
     assert (tmp_path / "runs/steel_wall/thornton/liggghts/out.liggghts").exists()

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from test_stopping import alive, until
 
+from cli.calls import call as epdem
 from epdem.base.processes import call
 from epdem.engines import log
 from epdem.engines.frames import text_frame
@@ -164,14 +165,15 @@ def test_rows_are_reported_while_the_program_runs_and_an_exception_stops_it(tmp_
 
 
 @pytest.mark.liggghts
-def test_nothing_is_written_outside_the_output_folder(tmp_path):
+def test_nothing_is_written_outside_the_output_folder(tmp_path, monkeypatch, capsys):
     here = tmp_path / "here"
     here.mkdir()
+    monkeypatch.chdir(here)
     (here / "log.liggghts").write_text("the user's own")
     short = ["--engine", "liggghts", "--law", "hertz", "--steps", "20", "--out", str(tmp_path / "out")]
     for words in (["doctor"], ["run", str(CASE), *short], ["deck", str(CASE), "--out", str(tmp_path / "deck")]):
-        done = subprocess.run([sys.executable, "-m", "epdem", *words], cwd=here, capture_output=True, text=True)
-        assert done.returncode in (0, 1), done.stderr
+        done = epdem(words, capsys, monkeypatch)
+        assert done.code in (0, 1), done.err
     assert [p.name for p in here.iterdir()] == ["log.liggghts"]
     assert (here / "log.liggghts").read_text() == "the user's own"
     assert (tmp_path / "out/results.h5").exists()
