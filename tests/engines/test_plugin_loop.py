@@ -77,59 +77,50 @@ STRESS = (
 )
 LOCAL = "compute p all pair/gran/local id force history delta\ndump l all local 5 local.txt c_p[1] c_p[3]\n"
 VISCOUS = "fix v all property/global coefficientRollingViscousDamping peratomtypepair 1 0.1\n"
-REASONS = {
-    "rolling_friction epsd": {"scene": {"rolling": "epsd"}, "before": VISCOUS},
-    "rolling_friction epsd3": {
-        "scene": {"rolling": "epsd3"},
-        "before": VISCOUS + "fix s all property/global rollingStiffness scalar 2.25\n",
+EPSD3 = {"pair_style": VISCOUS + "fix s all property/global rollingStiffness scalar 2.25\npair_style"}
+
+
+def output(lines):
+    return {"thermo_modify": lines + "thermo_modify"}
+
+
+MULTICONTACT = output("fix mc all multicontact/halfspace\n")
+MULTICONTACT |= {"boundary p p p": "boundary s s s"}  # LIGGGHTS's does not survive a periodic box
+MULTICONTACT |= {"\npair_coeff": " surface multicontact\npair_coeff"}
+STORED = {"store_force yes": "store_force yes store_force_contact yes"}
+REASONS = {  # keys of the scene, edits of its deck
+    "pair": {
+        "rolling_friction epsd": ({"rolling": "epsd"}, {"pair_style": VISCOUS + "pair_style"}),
+        "rolling_friction epsd3": ({"rolling": "epsd3"}, EPSD3),
+        "surface multicontact": ({}, MULTICONTACT),
+        "heating_tangential_history on": ({"settings": ("heating_tangential_history on",)}, {}),
+        "contacts at a distance": ({}, output("neigh_modify contact_distance_factor 1.1\n")),
+        "steps that ask for the virial": ({"law": "thornton_ning", "loose": True}, output(STRESS)),
+        "steps of compute pair/gran/local": ({}, output(LOCAL)),
     },
-    "surface multicontact": {"surface": "multicontact", "before": "fix mc all multicontact/halfspace\n"},
-    "heating_tangential_history on": {"scene": {"settings": ("heating_tangential_history on",)}},
-    "contacts at a distance": {"before": "neigh_modify contact_distance_factor 1.1\n"},
-    "steps that ask for the virial": {"before": STRESS, "scene": {"law": "thornton_ning", "loose": True}},
-    "steps of compute pair/gran/local": {"before": LOCAL},
+    "wall": {  # of the floor and of the lid
+        "rolling_friction epsd3": ({"rolling": "epsd3", "walls": True}, EPSD3),
+        "contacts with adhesion": ({"law": "jkr", "walls": True}, {}),
+        "contact forces are stored": ({"walls": True}, STORED),
+    },
 }
 
 
-@pytest.mark.parametrize("reason", REASONS)
-def test_what_our_loop_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, reason):
-    case = REASONS[reason]
-    scene = replace(Scene(), **case.get("scene", {}))
+@pytest.mark.parametrize(("loop", "reason"), [(loop, reason) for loop, rows in REASONS.items() for reason in rows])
+def test_what_our_loops_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, loop, reason):
+    keys, edits = REASONS[loop][reason]
+    scene = Scene(**keys)
     text = deck(scene)
-    before = case.get("before", "")
-    if "property/global" in before:
-        text = text.replace("pair_style", before + "pair_style", 1)
-    else:
-        text = text.replace("thermo_modify", before + "thermo_modify", 1)
-    if "surface" in case:  # LIGGGHTS's multicontact does not survive a periodic box
-        text = text.replace("boundary p p p", "boundary s s s")
-        text = text.replace("\npair_coeff", f" surface {case['surface']}\npair_coeff")
+    for old, new in edits.items():
+        assert old in text
+        text = text.replace(old, new, -1 if edits is STORED else 1)
+    says, count = (SAID, 1) if loop == "pair" else (SAID_OF_WALLS, 2)
     frames, said = outcome(tmp_path / "ours", scene, text=text)
-    assert said.count(SAID) == 1 and SAID + reason in said
-    assert (tmp_path / "ours" / "log.liggghts").read_text().count(SAID) == 1
-    assert np.array_equal(frames, outcome(tmp_path / "generic", scene, text=text, loop="generic")[0])
-
-
-OF_WALLS = {
-    "rolling_friction epsd3": {"rolling": "epsd3"},
-    "contacts with adhesion": {"law": "jkr"},
-    "contact forces are stored": {},
-}
-
-
-@pytest.mark.parametrize("reason", OF_WALLS)
-def test_what_our_loop_over_walls_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, reason):
-    scene = replace(Scene(walls=True), **OF_WALLS[reason])
-    text = deck(scene)
-    if scene.rolling == "epsd3":
-        text = text.replace("pair_style", REASONS[reason]["before"] + "pair_style", 1)
-    if "stored" in reason:
-        text = text.replace("store_force yes", "store_force yes store_force_contact yes")
-    frames, said = outcome(tmp_path / "ours", scene, text=text)
-    assert said.count(SAID_OF_WALLS) == said.count(SAID_OF_WALLS + reason) == 2  # the floor and the lid
+    assert said.count(says) == said.count(says + reason) == count
+    assert (tmp_path / "ours" / "log.liggghts").read_text().count(says) == count
     theirs, said = outcome(tmp_path / "generic", scene, text=text, loop="generic")
-    why = "EPDEM_LOOP = generic" if "stored" in reason else reason  # what the models lack comes first
-    assert said.count(SAID_OF_WALLS + why) == 2
+    why = "EPDEM_LOOP = generic" if loop == "pair" or "stored" in reason else reason  # what the models lack comes first
+    assert loop == "pair" or said.count(says + why) == count
     assert np.array_equal(frames, theirs)
 
 

@@ -13,19 +13,12 @@ from marks import thorough
 pytestmark = pytest.mark.liggghts
 
 
-@pytest.mark.parametrize(
-    "setting",
-    [
-        "tangential_damping off",
-        "limitForce on",
-        "heating_tracking on",
-        "heating_normal_hertz off",
-        "computeElasticPotential off",
-    ],
-)
 @pytest.mark.parametrize("law", ("hertz", "cavity"))
-def test_settings_of_hertz_in_an_existing_deck_are_accepted(tmp_path, law, setting):
-    started(tmp_path, deck(f"ep/{law}", settings=setting))
+def test_settings_of_hertz_in_an_existing_deck_are_accepted(tmp_path, law):
+    names = (
+        "tangential_damping off limitForce on heating_tracking on heating_normal_hertz off computeElasticPotential off"
+    )
+    started(tmp_path, deck(f"ep/{law}", settings=names))
 
 
 def test_an_unused_type_costs_nothing(tmp_path):
