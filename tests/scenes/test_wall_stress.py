@@ -42,19 +42,6 @@ def test_the_pressure_on_the_floor_bears_the_bed_and_nothing_wears(tmp_path):
     assert not walls["wear"].any() and not walls["shear_stress"].any()
 
 
-@pytest.mark.liggghts
-def test_wear_grows_and_is_proportional_to_its_constant(tmp_path):
-    wear = {}
-    for constant in ("1e-9 m^2/N", "2e-9 m^2/N"):
-        place = tmp_path / constant[0]
-        place.mkdir()
-        outcome = ran(scene(wear=constant, friction=0.3), place)
-        wear[constant] = outcome.results.walls.pivot(index="step", columns="triangle", values="wear")
-    one, two = wear.values()
-    assert (one.diff().iloc[1:] >= 0).all(axis=None) and one.iloc[-1].max() > 0 and not one.iloc[0].any()
-    assert two.to_numpy() == pytest.approx(2 * one.to_numpy(), rel=1e-9)
-
-
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_continued_run_knows_the_wear(engine, tmp_path):
     path, out = write_case(scene(wear="1e-9 m^2/N", friction=0.3, restarts=4), tmp_path), tmp_path / "out"
@@ -80,13 +67,6 @@ def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "i
     data["materials"]["iron"] = STEEL
     data["output"] = {"rows": 8, "particles": 4}
     return data
-
-
-@pytest.mark.liggghts
-def test_walls_of_two_materials_wear_by_their_own_constants(tmp_path):
-    walls = ran(sliding_on_two_plates(), tmp_path).results.walls
-    wear = walls.groupby("wall")["wear"].max()
-    assert wear["right"] == pytest.approx(3 * wear["left"], rel=1e-6) and wear["left"] > 0
 
 
 def strikes(*wears):
