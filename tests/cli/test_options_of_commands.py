@@ -43,39 +43,29 @@ HYPERCUBE = ("--latin-hypercube", "2")
 SWEEP = {"given": "numerics.error=1e-2", "points": "points.csv", "latin_hypercube": "3", "seed": "2", "jobs": "1"}
 SWEEP |= {"engine": "yade", "law": "cavity", "ranks": "2", "out": "there", "dry_run": None, "retry_failed": None}
 SWEEP |= {"slurm": "partition=p", "only": "1", "force": None}
+OUT = {"out": "there", "force": None}
+CONVERT = ("deck", "my.in", "--convert", "--set", "yieldPressure=1", "-o", "d")
+HOST = {"engine": "yade", "law": "cavity"} | OUT
+PREDICT = {"law": "cavity", "error": "1e-2", "full": None}
 ONE_IMPACT = {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}
 KINDS = {  # words of a call without the option, and the value of every option
     "run impacts": (("run", "steel.toml"), RUN),
     "run a scene": (("run", "scene.toml"), RUN),
     "deck of impacts": (("deck", "steel.toml", "-o", "d"), DECK),
     "deck of a scene": (("deck", "scene.toml", "-o", "d"), DECK),
-    "converted deck": (
-        ("deck", "my.in", "--convert", "--set", "yieldPressure=1", "-o", "d"),
-        DECK | {"law": "johnson"},
-    ),
+    "converted deck": (CONVERT, DECK | {"law": "johnson"}),
     "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
-    "predict impacts": (("predict", "steel.toml"), {"law": "cavity", "error": "1e-2", "full": None} | ONE_IMPACT),
-    "crosscheck impacts": (
-        ("verify crosscheck", "steel.toml"),
-        {"engine": "embedded", "law": "cavity", "out": "there", "fresh": None, "force": None},
-    ),
-    "motion of impacts": (
-        ("verify motion", "steel.toml"),
-        {"file": "other.toml", "engine": "yade", "law": "cavity", "out": "there", "force": None},
-    ),
-    "contacts": (("verify contacts",), {"engine": "yade", "out": "there", "force": None}),
-    "one impact": (("predict",), {"law": "cavity", "error": "1e-2", "full": None} | ONE_IMPACT),
-    "figures": (("verify figures",), {"pictures": "svg", "out": "there", "force": None}),
+    "predict impacts": (("predict", "steel.toml"), PREDICT | ONE_IMPACT),
+    "crosscheck impacts": (("verify crosscheck", "steel.toml"), HOST | {"engine": "embedded", "fresh": None}),
+    "motion of impacts": (("verify motion", "steel.toml"), HOST | {"file": "other.toml"}),
+    "contacts": (("verify contacts",), {"engine": "yade"} | OUT),
+    "one impact": (("predict",), PREDICT | ONE_IMPACT),
+    "figures": (("verify figures",), {"pictures": "svg"} | OUT),
     "cost of impacts": (
         ("verify cost", "steel.toml"),
-        {"engine": "embedded", "law": "cavity", "repetitions": "2", "pictures": "svg", "out": "there"}
-        | {"force": None},
+        HOST | {"engine": "embedded", "repetitions": "2", "pictures": "svg"},
     ),
-    "stability": (
-        ("verify stability",),
-        {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there"}
-        | {"force": None},
-    ),
+    "stability": (("verify stability",), HOST | {"group": "poisson", "every": "2", "steps": "1000"}),
     "view a scene": (("view", "scene.toml"), {"out": "there.png", "force": None}),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "soften a scene": (("soften", "scene.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
@@ -94,7 +84,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
     "status": (("status", "swept"), {"table": None}),
     "rerun": (("verify rerun", "stored/results.h5"), {}),
-    "validate": (("verify data",), {"sets": "leeb_G", "engine": "yade", "law": "hertz", "out": "there", "force": None}),
+    "validate": (("verify data",), {"sets": "leeb_G", "engine": "yade", "law": "hertz"} | OUT),
 }
 OTHERS = ["d/in.impact", "d/in.scene", "d/own", "d/my.in", "settle_glass.png", "runs/figures/figure_8_16.png"]
 OTHERS += ["runs/steel_wall/cost/cost.csv", "runs/validate/measured.csv", "runs/stability/stability.csv"]
