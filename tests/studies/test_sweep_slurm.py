@@ -47,7 +47,7 @@ def on_slurm(planned, here, out: Path, given: dict[str, str], during: Callable[[
             during(array)
         return not here.ask("squeue", "-h", "-j", array) and here.ask("sinfo", "-h") != ""
 
-    until(left, "the end of the array", seconds=300)
+    until(left, "the end of the array", seconds=1800)
     return array, table.write(planned, out)
 
 
