@@ -31,13 +31,7 @@ def test_impacts_on_meshes_are_those_on_a_flat_wall(tmp_path, law):
     for name, roof in {"tip": TIP, "edge": EDGE}.items():
         files = {"plate.stl": stl_text("roof", np.array(roof))}
         for k, speed in enumerate(speeds):
-            _, high, _ = walls(
-                tmp_path / f"{name}{k}",
-                law,
-                [speed],
-                wall="mesh",
-                files=files,
-            )
+            _, high, _ = walls(tmp_path / f"{name}{k}", law, [speed], wall="mesh", files=files)
             left = [path[-1] if path[-1] == path[-3] else 0.0 for path in (v[:, k], high[:, 0])]
             assert left[1] == pytest.approx(left[0], rel=2e-4) and (left[0] > 0) == (k > 0)
     moving = deck(
