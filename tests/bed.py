@@ -47,16 +47,16 @@ def growth(cover: Array, volume: Array) -> Array:
     return np.minimum(volume / (4.0 - 2.0 * np.minimum(cover, MOST_COVER)), MOST_GROWTH)
 
 
-def screening(others: Array, own: Array, radius: Array, nu: Array) -> Array:
+def screening(others: Array, own: Array, radius: Array, nu: Array, depth: Array) -> Array:
     """Recovery of a contact beside others over that of the same contact alone on a half-space, 0.05 to 1.
 
     others, own: squares of contact radii [m^2]. Constriction (1 - eps)^1.5 of the flux tube of a contact where the
     other contacts cover the share eps^2 of the surface of the sphere (Cooper, Mikic and Yovanovich 1969), and the
-    compression of the sphere by the mean pressure.
+    compression of the sphere by the mean pressure, between its center and the plane of the contact at this depth [m].
     """
     eps = np.minimum(np.sqrt(others) / (2 * radius), 1.0)
-    bulk = (1 - 2 * nu) / (2 * np.pi * (1 - nu**2)) * others / (np.sqrt(own) * radius)
-    return np.asarray(np.maximum((1 - eps) ** 1.5 + bulk, LEAST_SCREENING))
+    bulk = (1 - 2 * nu) / (2 * np.pi * (1 - nu**2)) * others / (np.sqrt(own) * radius) * (1 - depth / radius)
+    return np.asarray(np.clip((1 - eps) ** 1.5 + bulk, LEAST_SCREENING, 1.0))
 
 
 def stored_share(y: Array, tau: Array) -> Array:
@@ -116,7 +116,9 @@ class Bed:
         self.reached = np.full(contacts, -np.inf)  # largest overlap without growth [m]
         self.grown, self.shift, self.unstored = np.zeros((3, contacts))  # u, q [m] and (1-G) U [J]
         self.peak, self.peak_force = np.zeros((2, contacts))  # overlap with growth [m] and force [N] at the peak
-        self.gamma = np.ones(contacts)
+        self.screened = np.zeros((2, contacts))  # largest 1 - gamma of both sides
+        self.retreat = np.zeros(contacts)  # e [m]
+        self.full, self.lift = np.zeros(n + 1), np.ones(n + 1)  # N [J] and Q of each sphere
         self.pressure = np.zeros(n + 1)  # largest so far of each sphere [Pa], and 0 of planes
         self._near: Index = np.zeros(0, np.intp)
         self._law: Cavity | None = None
@@ -178,15 +180,15 @@ class Bed:
         g[-1] = 0.0  # of planes
         return u, g
 
-    def _screened(self, k: Index, area: Array, yields: NDArray[np.bool_]) -> Array:
-        """gamma of the contacts that yield, 1 of the others; area: m a^2 [m^2]."""
+    def _screened(self, k: Index, area: Array, yields: NDArray[np.bool_], reached: Array) -> Array:
+        """1 - gamma of both sides of the contacts that yield, 0 of the others; area: m a^2 [m^2]."""
         total = self._sum(k, area, area)
-        own, s = np.where(yields, area, 1.0), self.share_i[k]
+        own = np.where(yields, area, 1.0)
         found = []
-        for body in (self.i[k], self.j[k]):
+        for body, depth in zip((self.i[k], self.j[k]), self._depths(k, reached), strict=True):
             others = np.where(body == PLANE, 0.0, np.maximum(total[body] - area, 0.0))
-            found.append(screening(others, own, np.append(self.radius, 1.0)[body], self._nu[body]))
-        return np.where(yields, np.clip(s * found[0] + (1 - s) * found[1], LEAST_SCREENING, 1.0), 1.0)
+            found.append(1 - screening(others, own, np.append(self.radius, 1.0)[body], self._nu[body], depth))
+        return np.where(yields, found, 0.0)
 
     def _peak_force(self, law: Cavity, b: Array, alone: Array, m: Array, pressure: Array) -> Array:
         """Force [N] at the peak overlap b, of which `alone` is without growth: growth carries 2/3 Y + pressure."""
@@ -200,12 +202,12 @@ class Bed:
         """Forces [N] of all contacts at overlaps without growth [m], negative across a gap."""
         k = np.flatnonzero(overlap > -REACH * (self.R_i + np.where(self.wall, 0.0, self.R_j)))
         law, R = self._law_of(k), self.R_star[k]
-        reached = np.maximum(self.reached[k], overlap[k])
-        u, q, F_before = self.grown[k], self.shift[k], self.peak_force[k]
-        body, pressure = self.pressure, np.zeros(len(k))
+        u, q, e, F_before = self.grown[k], self.shift[k], self.retreat[k], self.peak_force[k]
+        s, body, pressure = self.share_i[k], self.pressure, np.zeros(len(k))
         touches = np.ones(len(k), bool)
-        for turn in range(100):
+        for turn in range(400):
             v = u + q
+            reached = np.maximum(self.reached[k], overlap[k] - e)
             on = overlap[k] + v > 0.0
             touches = on if turn < 30 else touches & on  # one that ends in this step does not come back in it
             b = np.maximum(reached + v, 1e-12 * R)
@@ -214,31 +216,48 @@ class Bed:
             F = np.where(touches, self._peak_force(law, b, np.maximum(b - u, 0.0), m, pressure), 0.0)
             share = np.where(touches, F / law.force(b), 1.0)
             area = m * law.radius(b) ** 2
-            gamma = np.where(touches, np.minimum(self.gamma[k], self._screened(k, area, yields)), 1.0)
-            gamma = gamma if self._grows else np.ones(len(k))
-            soft = 1 - (1 - gamma) * m
+            found = self._screened(k, area, yields, np.maximum(reached, 0.0))
+            lost = np.maximum(self.screened[:, k], found)
+            lost = np.where(touches & self._grows, lost, 0.0)
+            c_i, c_j = s * lost[0] * m, (1 - s) * lost[1] * m
             back = share * law.recovered_overlap(b)
-            residual = np.where(yields, np.maximum(np.maximum(reached, 0) - soft * back, 0), 0.0)
-            unstored = np.where(yields, (1 - soft) * share**2 * law.recovered_work(b), 0.0)
+            residual = np.where(yields, np.maximum(np.maximum(reached, 0) - (1 - c_i - c_j) * back, 0), 0.0)
+            unstored = np.where(yields, (c_i + c_j) * share**2 * law.recovered_work(b), 0.0)
             mean = np.where(F_before > 0, 0.5 * (F + F_before), F)
             q = self.shift[k] + np.where(yields, (unstored - self.unstored[k]) / np.where(yields, mean, 1.0), 0.0)
-            force, stored = unload(law, b, np.where(touches, F, 1.0), np.maximum(reached - overlap[k], 0.0), soft)
-            force, before = np.where(touches, force, 0.0), pressure
+            way = np.maximum(reached + e - overlap[k], 0.0)
+            force, stored = unload(law, b, np.where(touches, F, 1.0), way, np.ones(len(k)))
+            force, before, e_before = np.where(touches, force, 0.0), pressure, e
+            B_i, B_j = np.where(yields, c_i * back, 0.0), np.where(yields, c_j * back, 0.0)
+            full = np.maximum(self.full, self._sum(k, B_i * F, B_j * F))
+            full[-1] = 0.0
+            lift = np.clip(self._sum(k, B_i * force, B_j * force) / np.where(full > 0, full, np.inf), 0, 1) ** 0.75
+            lift = np.where(full > 0, lift, 1.0)
+            e = B_i * (1 - lift[self.i[k]]) + B_j * (1 - lift[self.j[k]])
             if self._grows:
                 u, g = self._by_others(k, residual)
                 body = np.maximum(self.pressure, self._pressure(k, force, overlap[k]))
                 pressure = self._between(k, g, body)
             settled = np.all(np.abs(pressure - before) <= CHANGE * self.Y[k])
+            settled = settled and np.all(np.abs(e - e_before) <= 0.1 * CHANGE * R)
             if settled and np.all(np.abs(u + q - v) <= CHANGE * R):
                 break
         else:
-            raise ArithmeticError(f"growth of {np.max(np.abs(u + q - v) / R):.1e} R* per turn after 100 turns")
+            raise ArithmeticError(f"growth of {np.max(np.abs(u + q - v) / R):.1e} R* per turn after {turn} turns")
         after = {"force": force, "stored": stored, "grown": u, "shift": q, "unstored": unstored}
-        after |= {"peak": b, "peak_force": F, "gamma": gamma, "reached": reached}
+        after |= {"peak": b, "peak_force": F, "reached": reached, "retreat": e}
         for name, values in after.items():
-            empty = {"gamma": 1.0, "reached": -np.inf}.get(name, 0.0)
+            empty = {"reached": -np.inf}.get(name, 0.0)
             kept: Array = getattr(self, name)
             kept[:] = empty
             kept[k] = np.where(touches, values, empty)
-        self.pressure = np.where(self._sum(k, touches, touches) > 0, body, 0.0)
+        self.screened[:] = 0.0
+        self.screened[:, k] = lost
+        lives = self._sum(k, touches, touches) > 0
+        self.pressure = np.where(lives, body, 0.0)
+        self.full, self.lift = np.where(lives, full, 0.0), np.where(lives, lift, 1.0)
         return self.force.copy()
+
+    def taken(self) -> Array:
+        """Energy that each sphere takes from the stored energy of its contacts [J]."""
+        return np.asarray(3 / 7 * (self.full * self.lift ** (7 / 3))[:-1])

@@ -96,6 +96,18 @@ def released(densities: list[tuple[Lattice, Material, float]], *, steps: int = 2
     return [np.stack([back, F / F[0]]) for F in found]
 
 
+def side_force_left(material: Material, densities: Array, *, steps: int = 200, way: float = 0.12) -> Array:
+    """Force on the sides of a die over that before, where the plates have none, after pressing to relative densities.
+
+    way: of the release [R], in which the plates part.
+    """
+    ends = np.pi / 6 / densities
+    paths = [np.append(np.linspace(1, end, steps + 1)[1:], np.linspace(end, end + way, 81)[1:]) for end in ends]
+    left = [F[np.argmax(F[steps:, 1] <= 0) + steps, 0] / F[steps - 1, 0]
+            for F in press([die_path(material, d) for d in paths])]  # fmt: skip
+    return np.array(left)
+
+
 def recovery(curve: Array, share: float) -> float:
     """Way [R] at which the force has fallen to a share of the peak; curve: of `released`."""
     way, force = curve

@@ -33,8 +33,8 @@ struct Block {
   double radius_ratio[most_lanes],
       overlap_ratio[most_lanes];          // largest w a/R* and w overlap/R* so far, w the larger share
   Line overlap, from_wall[3], wall_v[3];  // of a wall: as the host found them
-  Line cover_i, cover_j, volume_i, volume_j, dented_area, pressure_i, pressure_j;  // with compaction: Dents
-  double unused_history[64];  // of the lanes behind the last contact
+  Line dents_i[6], dents_j[6];            // with compaction: numbers of Dent
+  double unused_history[64];              // of the lanes behind the last contact
 };
 
 /// Settings and arrays of a pass, the same for all contacts.

@@ -55,10 +55,10 @@ EPDEM_INLINE Vec<Lanes> difference(const double* base, const int* i, const int* 
 
 /// BodySums of the spheres of lanes k, k + 1, ..., which lie side by side.
 EPDEM_INLINE BodySums<Lanes> sums_of(const double* base, const int* index) {
-  // rows of four begin at each sphere's three numbers; one number can be read behind the last row
+  static_assert(body_values == 4);
   const Columns c =
       columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + body_values * long(index[l])); });
-  return {c.a, c.b, c.c};
+  return {c.a, c.b, c.c, c.d};
 }
 
 EPDEM_INLINE void put(Line* lines, int k, Vec<Lanes> t) {
@@ -123,6 +123,7 @@ EPDEM_INLINE Mask parted(double now, Lanes last_step) { return now - last_step >
 /// The values of a history one by one: a copy as a whole would go through memory.
 template <int count, class From, class To>
 EPDEM_INLINE void copy(const From* from, To* to) {
+#pragma GCC unroll 64  // by itself GCC unrolls up to 16
   for (int k = 0; k < count; ++k) put_number(*to, k, number_at<Lanes>(*from, k));
 }
 
@@ -166,16 +167,11 @@ struct StoredGrowth : Growing<wall, Lanes> {
   EPDEM_INLINE void keep() const {
     Block& b = *block;
     write<growth_values>(b.history + k, reinterpret_cast<const Lanes*>(&this->state), at);
+    static_assert(sizeof b.dents_i == dent_sums * sizeof(Line));
     const Dents<Lanes>& d = this->dents;
-    store(b.cover_i.a + k, d.cover_i);
-    store(b.volume_i.a + k, d.volume_i);
-    store(b.dented_area.a + k, d.area);
-    store(b.pressure_i.a + k, d.pressure_i);
-    if constexpr (!wall) {
-      store(b.cover_j.a + k, d.cover_j);
-      store(b.volume_j.a + k, d.volume_j);
-      store(b.pressure_j.a + k, d.pressure_j);
-    }
+    for (int s = 0; s < dent_sums; ++s) store(b.dents_i[s].a + k, number_at<Lanes>(d.i, s));
+    if constexpr (!wall)
+      for (int s = 0; s < dent_sums; ++s) store(b.dents_j[s].a + k, number_at<Lanes>(d.j, s));
   }
 };
 
@@ -227,7 +223,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
       c = between_spheres(at(b.radius_i, k), at(b.radius_j, k), d, v, spin_i, spin_j);
     }
 
-    Lanes value[values + grown_values ? values + grown_values : 1] = {};
+    Lanes value[values + grown_values ? values + grown_values : 1];
     using Growth = std::conditional_t<grows, StoredGrowth<wall>, NoGrowth>;
     ContactHistory<Law, Friction, RollingHistory<rolling, !wall && values == 0>, Growth> history;
     history.rolling = {&b, &pass, k};

@@ -25,9 +25,9 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-constexpr int most_beside = FixHistory::columns + dent_sums + 2;  // of an atom that is sent, beside its contacts
-/// First number of a restart file; files of before have another number, and lack walls or pressures.
-constexpr double restart_form = -4.0;
+constexpr int most_beside = FixHistory::columns + dent_sums + 3;  // of an atom that is sent, beside its contacts
+/// First number of a restart file; files of before have another number, and lack values.
+constexpr double restart_form = -5.0;
 
 }  // namespace
 
@@ -80,13 +80,12 @@ void FixHistory::open_energies(int atoms) {
 }
 
 void FixHistory::add_wall_energies(const kernels::Block& b, int n, const Models& models) {
-  const double* const loaded = models.law->gap.root >= 0 ? b.contact_radius.a : b.stored_energy.a;
   for (int k = 0; k < n; ++k) {
     double* const row = array_atom[b.i[k]];
     const double work = b.plastic_work_step.a[k];
     if (work > 0.0 || models.compaction) row[plastic_work] += work;
     row[elastic_energy] += b.stored_energy.a[k];
-    row[loaded_contacts] += loaded[k] > 0.0;
+    row[loaded_contacts] += b.contact_radius.a[k] > 0.0;
   }
 }
 
@@ -107,12 +106,12 @@ void FixHistory::add_works(const kernels::Block& b, int n, const Models& models,
 }
 
 void FixHistory::close_growth(bool counts) {
-  bodies_.resize(long(body_values) * rows_ + 1);  // kernels read one number behind the last sphere
+  bodies_.resize(long(body_values) * rows_);
   largest_ = growth_reach;
   if (counts) {
     for (int i = 0; i < atom->nlocal; ++i) {
       const double* const dents = &dents_[dent_sums * long(i)];
-      const BodySums<double> now = sums_of_step(dents, array_atom[i][largest_pressure]);
+      const BodySums<double> now = sums_of_step(dents, array_atom[i][largest_pressure], array_atom[i] + body_memory);
       array_atom[i][largest_pressure] = now.pressure;
       std::memcpy(&bodies_[long(body_values) * i], &now, sizeof now);
     }
@@ -124,17 +123,12 @@ void FixHistory::close_growth(bool counts) {
 }
 
 void FixHistory::note_dents(const kernels::Block& b, int n, bool wall) {
-  const auto add = [this](int i, double cover, double volume, double area, double pressure) {
-    double* const dents = &dents_[dent_sums * long(i)];
-    dents[0] += cover;
-    dents[1] += volume;
-    dents[2] += area;
-    dents[3] += pressure;
+  const auto add = [this](int i, const kernels::Line* dent, int k) {
+    for (int c = 0; c < dent_sums; ++c) dents_[dent_sums * long(i) + c] += dent[c].a[k];
   };
   for (int k = 0; k < n; ++k) {
-    add(b.i[k], b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k], b.pressure_i.a[k]);
-    if (!wall && b.j[k] < atom->nlocal)
-      add(b.j[k], b.cover_j.a[k], b.volume_j.a[k], b.dented_area.a[k], b.pressure_j.a[k]);
+    add(b.i[k], b.dents_i, k);
+    if (!wall && b.j[k] < atom->nlocal) add(b.j[k], b.dents_j, k);
   }
 }
 

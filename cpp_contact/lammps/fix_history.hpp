@@ -49,7 +49,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double>& page() { return page_; }
 
   /// Energies are requested: columns plastic work, elastic energy, loaded contacts, work lost by friction, elastic
-  /// energy of friction, work lost by adhesion in its jumps. With compaction: largest pressure.
+  /// energy of friction, work lost by adhesion in its jumps. With compaction: largest pressure, BodyMemory.
   enum Column {
     plastic_work,
     elastic_energy,
@@ -58,7 +58,8 @@ class FixHistory : public LAMMPS_NS::Fix {
     friction_energy,
     adhesive_work,
     largest_pressure,
-    columns
+    body_memory,
+    columns = body_memory + memory_values
   };
   class HalfEnergies;
   /// What scatter_pairs adds beside the forces: half of plastic work and elastic energy to each atom of this rank.
@@ -151,7 +152,7 @@ class FixHistory::HalfEnergies {
   HalfEnergies(const kernels::Block& b, const Models& models, double* rows)
       : work_(b.plastic_work_step.a),
         energy_(b.stored_energy.a),
-        loaded_(models.law->gap.root >= 0 ? b.contact_radius.a : energy_),
+        loaded_(b.contact_radius.a),
         gives_back_(models.compaction),
         rows_(rows) {}
 

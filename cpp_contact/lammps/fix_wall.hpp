@@ -105,7 +105,7 @@ class FixWall : public LAMMPS_NS::Fix {
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   std::vector<double> copies_[2], scratch_;
-  static constexpr int sums = 7, local_columns = 15;
+  static constexpr int sums = 7, local_columns = 16;
   double sum_[sums] = {}, total_[sums] = {};
   std::vector<double> local_;  // of each contact: rows of `note`
   std::vector<double*> local_row_;

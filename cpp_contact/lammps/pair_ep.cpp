@@ -48,7 +48,7 @@ std::vector<char*> words_of_text(std::vector<std::string>& words) {
 
 /// A fix in place of the history's keeps the history before the fixes of the deck: those may add atoms.
 PairEp::PairEp(LAMMPS* lmp) : Pair(lmp), block_(std::make_unique<kernels::Block>()) {
-  single_extra = 11;
+  single_extra = 12;
   svector = single_;
   no_virial_fdotr_compute = 1;
   centroidstressflag = CENTROID_NOTAVAIL;
@@ -327,7 +327,7 @@ double* PairEp::history_of(int i, int j) const {
 
 double PairEp::single(int i, int j, int, int, double rsq, double, double, double& fforce) {
   fforce = 0.0;
-  std::fill_n(single_, 11, 0.0);
+  std::fill_n(single_, 12, 0.0);
   const double sum = atom->radius[i] + atom->radius[j], r = std::sqrt(rsq), overlap = sum - r;
   const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
   const bool recent = known && history_->now() - known[layout_.last_step] <= 1.0;
@@ -348,7 +348,8 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   const double *const xi = atom->x[i], *const xj = atom->x[j];
   for (int axis = 0; axis < 3; ++axis) fforce += b.force[axis].a[0] * (xi[axis] - xj[axis]) / rsq;
   single_[0] = overlap;
-  single_[1] = models_.law->most < 0 ? overlap : std::max(overlap, history[models_.law->most]);
+  if (layout_.gap.growth >= 0) single_[11] = retreat_of(history.data() + layout_.gap.growth);
+  single_[1] = models_.law->most < 0 ? overlap : std::max(overlap - single_[11], history[models_.law->most]);
   single_[2] = b.contact_radius.a[0];
   single_[3] = layout_.gap.root < 0 || history[layout_.gap.root] > 0.0;
   if (models_.cohesion == bond_place) single_[3] = !broken_of(history.data() + layout_.gap.growth);

@@ -79,7 +79,7 @@ class PairEp : public LAMMPS_NS::Pair {
   int place_[kernels::block_size + kernels::most_lanes];  // in the list
   std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
   int frozen_ = 0;                 // group bit
-  double single_[11];              // svector
+  double single_[12];              // svector
 };
 
 }  // namespace epdem::lammps

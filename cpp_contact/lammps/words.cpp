@@ -363,7 +363,7 @@ Layout layout_of(const Models& models, bool wall) {
   layout.mirror.insert(layout.mirror.end(), rolling, -1.0);
   if (models.compaction) {
     layout.gap.growth = static_cast<int>(layout.mirror.size());
-    layout.mirror.insert(layout.mirror.end(), growth_values, 1.0);
+    for (int k = 0; k < growth_values; ++k) layout.mirror.push_back(GrowthState<double>::turns(k) ? -1.0 : 1.0);
   }
   layout.values = static_cast<int>(layout.mirror.size());
   return layout;

@@ -5,27 +5,22 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "epdem/compaction.hpp"
 #include "host.hpp"
 
 namespace epdem::liggghts {
 
-/// Per-atom properties: growth, area of the contacts and pressure (BodySums) of the step before, and sums, to which the
-/// contacts of this step add their dents: cover, volume, area and pressure. Walls come after the pairs, so that the
-/// sums close at the begin of the next pass over the pairs.
+/// Per-atom properties: BodySums and BodyMemory of the step before, and sums, to which the contacts of this step add
+/// their Dent. Walls come after the pairs, so that the sums close at the begin of the next pass over the pairs.
 class Growth {
  public:
   /// For the pair style, whose settings come first: creates the properties.
   static void create(LAMMPS_NS::LAMMPS* lmp) {
-    const char* bodies[] = {bodies_name, "all", "property/atom", bodies_name, "vector", "yes",
-                            "yes",       "no",  "0.0",           "0.0",       "0.0"};
-    const char* sums[] = {sums_name, "all", "property/atom", sums_name, "vector", "yes",
-                          "no",      "no",  "0.0",           "0.0",     "0.0",    "0.0"};
-    if (!find(lmp, bodies_name, body_values, bodies_name))
-      lmp->modify->add_fix_property_atom(11, const_cast<char**>(bodies), bodies_name);
-    if (!find(lmp, sums_name, dent_sums, sums_name))
-      lmp->modify->add_fix_property_atom(12, const_cast<char**>(sums), sums_name);
+    create(lmp, bodies_name, body_values, "yes");
+    create(lmp, memory_name, memory_values, "no");
+    create(lmp, sums_name, dent_sums, "no");
   }
 
   /// Whether the pair style has compaction.
@@ -34,8 +29,9 @@ class Growth {
   /// Before each run, for pairs and walls.
   void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
     bodies_ = find(lmp, bodies_name, body_values, model.c_str());
+    memory_ = find(lmp, memory_name, memory_values, model.c_str());
     sums_ = find(lmp, sums_name, dent_sums, model.c_str());
-    if (bodies_ && sums_) return;
+    if (bodies_ && memory_ && sums_) return;
     const std::string text = "model " + model + ": compaction on of a wall needs it for the pair style as well";
     lmp->error->all(FLERR, text.c_str());
   }
@@ -44,10 +40,10 @@ class Growth {
   void close(const LAMMPS_NS::Atom& atom) {
     const int nlocal = atom.nlocal;
     if (nlocal == 0 && atom.nghost == 0) return static_cast<void>(bodies_->do_forward_comm());
-    double *sums = sums_->array_atom[0], *body = bodies_->array_atom[0];
+    double *sums = sums_->array_atom[0], *body = bodies_->array_atom[0], *kept = memory_->array_atom[0];
     double largest = 0.0;
-    for (int i = 0; i < nlocal; ++i, sums += dent_sums, body += body_values) {
-      const BodySums<double> now = sums_of_step(sums, body[2]);
+    for (int i = 0; i < nlocal; ++i, sums += dent_sums, body += body_values, kept += memory_values) {
+      const BodySums<double> now = sums_of_step(sums, body[2], kept);
       std::memcpy(body, &now, sizeof now);
       largest = std::max(largest, now.growth);
       std::fill_n(sums, dent_sums, 0.0);
@@ -66,21 +62,20 @@ class Growth {
   /// The same with room for growth until the next neighbor lists.
   double factor_until_lists() const { return touch_factor(largest_ + 0.02); }
 
-  /// dent_sums numbers per sphere, for a loop that adds by itself as `add` does.
+  /// dent_sums numbers per sphere, to which the contacts of this step add.
   double* sums() { return sums_->array_atom[0]; }
-
-  /// Adds the dents of a contact of this step to a body.
-  void add(int body, double cover, double volume, double area, double pressure) {
-    double* const sums = sums_->array_atom[body];
-    sums[0] += cover;
-    sums[1] += volume;
-    sums[2] += area;
-    sums[3] += pressure;
-  }
 
  private:
   static constexpr const char* bodies_name = "compactionGrowth";
+  static constexpr const char* memory_name = "compactionMemory";
   static constexpr const char* sums_name = "compactionSums";
+
+  static void create(LAMMPS_NS::LAMMPS* lmp, const char* name, int values, const char* to_ghosts) {
+    if (find(lmp, name, values, name)) return;
+    std::vector<const char*> words = {name, "all", "property/atom", name, "vector", "yes", to_ghosts, "no"};
+    words.resize(words.size() + values, "0.0");
+    lmp->modify->add_fix_property_atom(int(words.size()), const_cast<char**>(words.data()), name);
+  }
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, int values, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -88,6 +83,7 @@ class Growth {
   }
 
   LAMMPS_NS::FixPropertyAtom* bodies_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* memory_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* sums_ = nullptr;
   double largest_ = 0.0;
 };

@@ -67,8 +67,7 @@ class LawModel : public NormalModel {
     const Step<Law>& now = contact.step;
 
     if (keep) {
-      const bool bears = adheres<Law> ? now.radius > 0.0 : energies.stored > 0.0;
-      if (plastic_work_) tally_.add(wall_, energies, bears, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) tally_.add(wall_, energies, now.radius > 0.0, {s.i, s.j, atom->nlocal});
       if (contact_strain_) {
         const double share = larger_share(pair.bodies) / R_star;
         strain_.note(s.i, share * now.radius, share * contact.overlap);
@@ -149,9 +148,8 @@ class LawModel : public NormalModel {
     const NormalContact<Law> contact = normal(growth);
     if (!keep) return contact;
     std::memcpy(state, &growth.state, sizeof growth.state);
-    const Dents<double>& d = growth.dents;
-    growth_.add(s.i, d.cover_i, d.volume_i, d.area, d.pressure_i);
-    if (!wall && s.j < atom->nlocal) growth_.add(s.j, d.cover_j, d.volume_j, d.area, d.pressure_j);
+    add_dent(growth_.sums() + dent_sums * long(s.i), growth.dents.i);
+    if (!wall && s.j < atom->nlocal) add_dent(growth_.sums() + dent_sums * long(s.j), growth.dents.j);
     return contact;
   }
 

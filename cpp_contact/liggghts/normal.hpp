@@ -66,8 +66,9 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (!setup) refuse("compaction", "the loops of LIGGGHTS-PFM do not have it");
     if (cohesion && !bonds_) refuse("compaction", "it is for contacts without cohesion, or with ep/bond");
     if (!wall_) Growth::create(lmp);
-    for (const char* slot : GrowthState<double>::slots) {
-      const int at = setup->add_history_value(slot, "0");
+    using State = GrowthState<double>;
+    for (int k = 0; k < growth_values; ++k) {
+      const int at = setup->add_history_value(State::slots[k], State::turns(k) ? "1" : "0");
       if (gap_.growth < 0) gap_.growth = at;
     }
   }

@@ -29,6 +29,8 @@ class EpPhys : public FrictPhys {
       add(python, "bodyPressure", "pressure [Pa] of the bodies that their growth carries, with compaction",
           [](EpPhys& p) { return p.bodyPressure(); });
       add(python, "brokenBond", "1: the bond of this contact has broken", [](EpPhys& p) { return p.brokenBond(); });
+      add(python, "retreat", "overlap [m] that other contacts take as they part, with compaction",
+          [](EpPhys& p) { return p.retreat(); });
       for (int k = 0; k < iy::parameter_count; ++k)
         if (iy::is_first(k)) {
           const epdem::Parameter& p = *iy::parameters[k].declared;
@@ -85,6 +87,7 @@ class EpPhys : public FrictPhys {
   double grownOverlap() const { return growthAt() < 0 ? 0.0 : epdem::grown_overlap_of(&history[growthAt()]); }
   double bodyPressure() const { return growthAt() < 0 ? 0.0 : epdem::body_pressure_of(&history[growthAt()]); }
   double brokenBond() const { return growthAt() < 0 ? 0.0 : epdem::broken_of(&history[growthAt()]); }
+  double retreat() const { return growthAt() < 0 ? 0.0 : epdem::retreat_of(&history[growthAt()]); }
 
   boost::python::dict pyDictCustom() const override {
     namespace iy = epdem::in_yade;

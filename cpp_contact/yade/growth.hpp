@@ -49,16 +49,14 @@ class EpGrowth : public GlobalEngine {
         epdem::Dents<double> dents;
         std::memcpy(&dents, &phys->history[phys->growthAt() + epdem::growth_values], sizeof dents);
         // i is the first sphere
-        const bool first = phys->wall != 0 || contact->getId1() == id;
-        sums[0] += first ? dents.cover_i : dents.cover_j;
-        sums[1] += first ? dents.volume_i : dents.volume_j;
-        sums[2] += dents.area;
-        sums[3] += first ? dents.pressure_i : dents.pressure_j;
+        epdem::add_dent(sums, phys->wall != 0 || contact->getId1() == id ? dents.i : dents.j);
       }
-      const epdem::BodySums<double> now = epdem::sums_of_step(sums, state->pressure);
+      static_assert(std::tuple_size_v<EpMemory> == epdem::memory_values);
+      const epdem::BodySums<double> now = epdem::sums_of_step(sums, state->pressure, state->memory.data());
       state->growth = now.growth;
       state->dentedArea = now.area;
       state->pressure = now.pressure;
+      state->parted = now.parted;
     }
   }
 

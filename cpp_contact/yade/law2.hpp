@@ -213,7 +213,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     if constexpr (grows) {
       const auto sums_of = [](const State& state) {
         const auto& body = static_cast<const EpState&>(state);
-        return epdem::BodySums<double>{body.growth, body.dentedArea, body.pressure};
+        return epdem::BodySums<double>{body.growth, body.dentedArea, body.pressure, body.parted};
       };
       const double* const state = &phys.history[epdem::in_yade::growth_at<Law>];
       if constexpr (wall)

@@ -10,6 +10,7 @@
 namespace yade {
 
 using epdem::in_yade::LawValues;
+using EpMemory = std::array<double, epdem::memory_values>;
 
 class EpState : public State {
  public:
@@ -23,7 +24,9 @@ class EpState : public State {
     ((Real, frictionWork, 0., , "work of friction [J], with partial slip"))
     ((Real, growth, 0., Attr::readonly, "growth of the sphere over its radius by the dents of its contacts, with compaction"))
     ((Real, dentedArea, 0., Attr::readonly, "sum of the areas of its contacts that yield [m^2], with compaction"))
-    ((Real, pressure, 0., Attr::readonly, "largest mean pressure by its contacts so far [Pa], with compaction")),
+    ((Real, pressure, 0., Attr::readonly, "largest mean pressure by its contacts so far [Pa], with compaction"))
+    ((Real, parted, 0., Attr::readonly, "share of its recovery that parted contacts have taken, with compaction"))
+    ((EpMemory, memory, EpMemory(), Attr::hidden, "what the body keeps of its contacts, with compaction")),
     createIndex(););
   // clang-format on
   REGISTER_CLASS_INDEX(EpState, State);

@@ -10,6 +10,7 @@ from engines.hosts import CLASSES, LAMMPS, LIGGGHTS
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
+from epdem.scenes.plan.model import pair_law
 from epdem.scenes.plan.plan import plan
 from epdem.theory.pair import E_star
 
@@ -32,12 +33,13 @@ def test_a_tablet_is_pressed_and_broken(host, tmp_path):
 
     Ejection ends contacts, whose dents compaction forgets: without bonds the same scene leaves 0.19 of its energy.
     """
-    found = run(write_case(tablet(), tmp_path), host, out=tmp_path / "out").results
+    case = write_case(tablet(), tmp_path)
+    found = run(case, host, out=tmp_path / "out").results
     balance = found.energy_balance
     moved = balance[["kinetic", "plastic", "elastic"]].abs().max().sum()
     steps = found.phases.set_index("phase")["end"]
     assert balance["balance"][balance["step"] <= steps["release"]].abs().max() < 5e-3 * moved
-    assert balance["balance"].abs().max() < 0.04 * moved
+    assert balance["balance"].abs().max() < 0.05 * moved
     c = found.contacts
     assert set(c["bonded"].unique()) == {0.0, 1.0} and not c["bonded"][c["j"] == 0].any()
     assert (c["dent_radius"][c["bonded"] > 0] == c["contact_radius"][c["bonded"] > 0]).all()
@@ -46,9 +48,14 @@ def test_a_tablet_is_pressed_and_broken(host, tmp_path):
     pulls = pull > 1e-3 * pull.max()
     assert pulls.sum() > 20 and (c["bonded"][pulls] == 1).all()
     assert (pull[pulls] <= STRENGTH * np.pi * c["dent_radius"][pulls] ** 2 * (1 + 1e-3)).all()
-    stretch = c["residual_overlap"] - c["overlap"] - c["added_overlap"]
-    soft = 2 * E_star(12e9, 0.34, 12e9, 0.34) * c["dent_radius"] * stretch  # of G = 1, and of the least G
-    assert (pull[pulls] > 0.99 * soft[pulls]).all() and (pull[pulls] < soft[pulls] / 0.05).all()
+    # from the overlap at which the contact alone has no force: the dent is what the screened one gives back less
+    largest, E = c["delta_max"] + c["added_overlap"], E_star(12e9, 0.34, 12e9, 0.34)
+    yields = pair_law(parse(tablet()), "powder", "powder")[0].backbone(E_star=E, R_star=25e-6, radius=50e-6)
+    kept = 1 - (1 - c["screening"]) * (1 - yields.yield_overlap / largest)
+    gives_back = (largest - c["residual_overlap"]) / kept
+    stretch = c["delta_max"] - gives_back - c["overlap"] + c["retreat"]
+    spring = 2 * E * c["dent_radius"] * stretch
+    assert pull[pulls] == pytest.approx(spring[pulls].to_numpy(), rel=0.03)
     whole = [(c["bonded"][c["step"] == steps[name]] > 0).sum() for name in ("press", "free", "test")]
     assert whole[0] > whole[1] > 0 and whole[2] > 0
     assert found.rows["tensile_stress"].max() > 0

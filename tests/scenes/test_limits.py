@@ -233,10 +233,12 @@ def test_a_pressed_contact_is_as_wide_as_in_a_random_packing_and_screened_by_ele
 
 @pytest.mark.parametrize("mu", [0.0, 0.2])
 def test_the_step_of_a_press_is_that_of_its_density_and_not_of_its_speed(mu):
-    """0.8 of half of 2 sqrt(m*/k), k = 2 E* a/gamma; with friction of sqrt(0.6/(12 gamma kappa)) of it."""
+    """0.8 of (0.5 less 0.2 (1 - gamma)) of 2 sqrt(m*/k), k = 2 E* a/gamma; with friction of sqrt(0.6/(12 gamma kappa))
+    where that is less."""
     E_star, m_star = 12e9 / (2 * (1 - 0.34**2)), 4 / 3 * math.pi * 50e-6**3 * 8960 / 2
     a, gamma = 0.4905 * 50e-6, 0.3913
-    share = min(0.5, math.sqrt(0.6 / (12 * gamma * 2 * 0.66 / 1.66))) if mu else 0.5
+    smooth = 0.5 - 0.2 * (1 - gamma)
+    share = min(smooth, math.sqrt(0.6 / (12 * gamma * 2 * 0.66 / 1.66))) if mu else smooth
     expected = 0.8 * share * 2 * math.sqrt(m_star * gamma / (2 * E_star * a))
     for speed in ("1 m/s", "0.1 m/s"):
         found = plan(parse(press_of_copper(speed=speed) | {"contact": {"friction": mu}})).time_step
@@ -254,4 +256,4 @@ def test_a_press_is_quiet_at_the_step_of_its_density_and_explodes_at_twice_of_it
         scene = write_case(data | {"numerics": {"time_step": f"{factor * step} s"}}, tmp_path)
         energy = run(scene, out=tmp_path / f"{factor}").results.tables["energy_balance"]
         created.append(energy["balance"].abs().max() / energy["work"].max())
-    assert created[0] < 0.03 and created[1] > 1.0
+    assert created[0] < 0.03 and created[1] > 0.5

@@ -96,7 +96,7 @@ def test_the_table_of_stages_has_the_numbers_of_rows_frames_and_energies(pressed
     assert by_phase["reached"].dropna().to_dict() == {name: reached[name] for name in ("stage1", "stage2")}
     assert (by_phase["peak"] >= by_phase["pressure"]).all()
     assert by_phase["error"]["stage1"] == pytest.approx(by_phase["peak"]["stage1"] / PRESSURES[0] - 1)  # a wave
-    assert 0.005 < by_phase["error"]["stage1"] < 0.05
+    assert 0.005 < by_phase["error"]["stage1"] < 0.1
     height = np.array([plate(pressed, "punch", step) for step in found["step"]])
     assert found["height"].to_numpy() == pytest.approx(height, rel=1e-6)
     volume = COUNT * 4 / 3 * math.pi * RADIUS**3
@@ -271,7 +271,7 @@ def test_rows_have_height_and_density_and_the_page_the_table_of_stages(pressed):
     dense = pressed.results.tables["stages"].set_index("phase")["relative_density"]["stage2"]
     assert numbers_of(pressed.results)["relative_density_max"] == pytest.approx(dense, rel=3e-3)  # a target of a fit
     (part,) = [part for part in scene_page(pressed).parts if getattr(part, "title", "").startswith("Plates")]
-    assert "the force of an ejection is no result" in part.note
+    assert "0.8 to 1.3 times that of finite elements" in part.note
 
 
 @pytest.mark.liggghts
@@ -303,9 +303,9 @@ def test_a_round_die_has_the_same_densities_in_every_engine(engine, tmp_path):
 
 
 def round_die(particles, folder, engine, walls="powder"):
-    """Powder in a round die without friction, to 60 MPa."""
+    """Powder in a round die without friction, to 40 MPa."""
     data = without(
-        press(diameter="0.6 mm", count=120, stages=["60 MPa"], walls=walls, particles=particles), "box", "hold"
+        press(diameter="0.6 mm", count=120, stages=["40 MPa"], walls=walls, particles=particles), "box", "hold"
     )
     data["materials"]["soft"] = data["materials"]["powder"] | {"young_modulus": "6 GPa", "yield_stress": "60 MPa"}
     return ran(data, folder, engine)
@@ -346,7 +346,7 @@ def test_two_punches_press_as_one_that_is_twice_as_fast(engine, tmp_path):
 
 
 @pytest.mark.liggghts
-def test_an_ejection_pushes_the_tablet_by_its_way_against_the_friction_of_the_sides_and_is_no_result(tmp_path):
+def test_an_ejection_pushes_the_tablet_by_its_way_against_the_friction_of_the_sides(tmp_path):
     sides = [
         {"name": f"on_{wall}", "kind": "force", "wall": wall, "component": "z"}
         for wall in ("left", "right", "front", "back")
@@ -367,9 +367,10 @@ def test_an_ejection_pushes_the_tablet_by_its_way_against_the_friction_of_the_si
     pushed = (rows["floor_pressure"] - rows["pressure"]) * SIDE**2
     assert pushed.iloc[-50:].mean() == pytest.approx(friction.iloc[-50:].mean(), rel=0.05)
     assert found["opposite_pressure"]["eject"] > 2.0 * found["pressure"]["eject"]
-    assert found["radial_pressure"].notna().to_list() == [True, False, False]
+    kept = found["radial_pressure"] / found["radial_pressure"]["stage1"]
+    assert 0 < kept["release1"] < 0.3 and kept["eject"] < 0.6, "the sides retreat, and the floor presses them out again"
     (said,) = [warning for warning in outcome.warnings if "phase eject" in warning]
-    assert "its forces are no results" in said and outcome.passed
+    assert "its forces are too large" in said and outcome.passed
 
 
 @pytest.mark.parametrize("engine", PRESSES)

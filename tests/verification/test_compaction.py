@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bed import PLANE, Bed, Material
-from bed_lattices import distance_at, recovery, released
+from bed_lattices import distance_at, recovery, released, side_force_left
 from dense_lattices import (
     DEVIATIONS,
     LATTICES,
@@ -54,7 +54,7 @@ def test_side_stress_of_a_die(name, by_law, by_elements, curves):
 
 @pytest.mark.parametrize(
     ("name", "E", "density", "expected"),
-    [("die", 120, (0.65, 0.80, 0.90, 0.95), (1.16, 0.93, 0.84, 0.72)), ("die_soft", 30, (0.80, 0.90), (0.75, 0.74))],
+    [("die", 120, (0.65, 0.80, 0.90, 0.95), (1.16, 0.93, 0.84, 0.72)), ("die_soft", 30, (0.80, 0.90), (0.78, 0.79))],
 )
 def test_side_force_of_a_die_over_that_of_elements_that_stand(name, E, density, expected, curves):
     """Those of docs/press.md; while the elements stand they lose less than a tenth of their moving stresses."""
@@ -64,6 +64,21 @@ def test_side_force_of_a_die_over_that_of_elements_that_stand(name, E, density, 
     assert np.abs([axial / szz - 0.95, lateral / sxx - 0.95]).max() < 0.05
     d, _, by_law = curves[name]
     assert np.interp(-at, -d, by_law) / lateral == pytest.approx(expected, abs=0.015)
+
+
+@pytest.mark.parametrize(
+    ("name", "densities", "by_law", "by_elements"),
+    [
+        ("", (0.65, 0.80, 0.90, 0.95), (0.57, 0.39, 0.36, 0.36), (0.00, 0.29, 0.32, 0.34)),
+        ("_soft", (0.80, 0.90, 0.95), (0.69, 0.59, 0.57), (0.44, 0.57, 0.61)),
+    ],
+)
+def test_side_force_of_a_die_that_is_left_after_the_release(name, densities, by_law, by_elements):
+    """Over that before; another program computed the numbers of the law from the same formulas."""
+    material = MATERIALS[name]
+    rows = [row for row in stands(left=True) if row[:2] == ("die", material.E) and row[2] in densities]
+    assert [row[-1] for row in rows] == pytest.approx(by_elements, abs=0.01)
+    assert side_force_left(material, np.array(densities)) == pytest.approx(by_law, abs=0.015)
 
 
 @pytest.fixture(scope="module")
@@ -79,19 +94,19 @@ def ratios(releases, shares=(0.75, 0.5, 0.25, 0.02)):
 
 
 def test_recovery_of_released_lattices_against_finite_elements(releases):
-    """To D = 0.95, nu = 0.2 and 0.34: at 2 % of the force 0.90 to 1.14, at 75, 50 and 25 % 0.88 to 1.28."""
+    """To D = 0.95, nu = 0.2 and 0.34: at 2 % of the force 0.77 to 1.06, at 75, 50 and 25 % 0.82 to 1.18."""
     found = np.array([r for (_, _, nu, D, *_), r in ratios(releases) if nu in (0.2, 0.34) and D <= 0.95])
     assert len(found) == 22
-    assert found[:, 3].min() > 0.895 and found[:, 3].max() < 1.145
-    assert found[:, :3].min() > 0.87 and found[:, :3].max() < 1.29
+    assert found[:, 3].min() > 0.77 and found[:, 3].max() < 1.06
+    assert found[:, :3].min() > 0.82 and found[:, :3].max() < 1.185
 
 
 def test_recovery_at_other_poisson_ratios_and_at_the_limit(releases):
-    """Above D = 0.95 and beside nu = 0 and 0.45 the last of the force comes back up to 27 % too early or too late."""
+    """Above D = 0.95 and beside nu = 0 and 0.45 the last of the force comes back up to 37 % too early."""
     found = np.array([r for (_, _, nu, D, *_), r in ratios(releases) if nu not in (0.2, 0.34) or D > 0.95])
     assert len(found) == 8
-    assert found[:, :3].min() > 0.945 and found[:, :3].max() < 1.36
-    assert found[:, 3].min() > 0.73 and found[:, 3].max() < 1.165
+    assert found[:, :3].min() > 0.86 and found[:, :3].max() < 1.35
+    assert found[:, 3].min() > 0.62 and found[:, 3].max() < 1.12
 
 
 @pytest.mark.parametrize(("name", "density"), [("fcc", 0.80), ("fcc", 0.85), ("fcc", 0.95), ("sc", 0.65), ("sc", 0.90)])

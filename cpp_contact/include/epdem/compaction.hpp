@@ -10,9 +10,15 @@
 // 2. Screening. The other contacts of a body, over whose circles A = sum a^2, shorten its elastic recovery by gamma:
 //      gamma = (1-eps)^1.5 + A/(a R) (1-2nu)/(2 pi (1-nu^2)), eps = sqrt(A)/(2 R)
 //    (constriction of a flux tube, Cooper, Mikic and Yovanovich 1969; compression of the body by the mean pressure).
-//    A contact unloads with E*/G, G = 1 - (1-gamma) m; m = 1 - alpha_Y/b weighs contacts by yield, b: peak overlap.
+//    of the side of each body, R - d in place of R for the compression, d: depth of the contact. Contacts are weighed
+//    by yield, m = 1 - alpha_Y/b, b: peak overlap. Dents see the recovery G d_e, G = 1 - sum c, c = s (1-gamma) m of a
+//    body with the part s of the compliance.
 // 3. Energy. What a screened contact does not store is not taken from the walls: its overlap also grows by q,
 //    F dq = d[(1-G) U], U: recoverable work of the law at the peak.
+// 5. Retreat. Surfaces that other contacts have pressed up follow these when they part: the overlap falls by
+//    e = sum c d_e (1-Q), with N Q^(4/3) = sum of c d_e F over the contacts of the body, N: largest sum of c d_e F_max.
+//    Of all released alike, each contact recovers G d_e; of one released alone, the others lose force. The energies
+//    stored at b and at overlaps below, less 3/7 N Q^(7/3) of each body, are a potential of all forces.
 // 4. Pressure. What growth adds is not indented by its counterpart: it is the flowing body laid against it, and carries
 //    2/3 Y + P, P: mean pressure of the body, sum F (R - d)/(3 V), the largest so far. Of the force of the law, what
 //    growth adds to it by the hardness gives way to the area that growth adds times 2/3 Y + P, in the share m.
@@ -41,6 +47,9 @@ inline constexpr double growth_reach = 0.25;
 /// Smallest gamma.
 inline constexpr double least_screening = 0.05;
 
+/// Smallest loss that is above round-off; that of the smallest area of others is 2e-5.
+inline constexpr double least_loss = 1e-12;
+
 /// Other contacts screen a contact from this share of its own area on.
 inline constexpr double least_others = 1e-9;
 
@@ -60,43 +69,73 @@ struct BodySums {
   T growth;    // g [-]
   T area;      // A [m^2]
   T pressure;  // P [Pa]
+  T parted;    // 1 - Q, extrapolated to the step
 };
 
 inline constexpr int body_values = sizeof(BodySums<double>) / sizeof(double);
 
-/// Sums of a body: cover, volume, area and pressure.
-inline constexpr int dent_sums = 4;
+/// What a body keeps beside BodySums. Zeros: a new body.
+struct BodyMemory {
+  double full;       // N [J]
+  double parted[3];  // 1 - Q of the sums of the last steps, the last first
+};
+
+inline constexpr int memory_values = sizeof(BodyMemory) / sizeof(double);
+
+/// What a contact adds to the sums of a body.
+template <class T>
+struct Dent {
+  T cover;     // depth over radius
+  T volume;    // to S2
+  T area;      // m a^2 [m^2]
+  T pressure;  // F (R - d)/(3 V) [Pa]
+  T full;      // c d_e F_max [J]
+  T held;      // c d_e F [J]
+};
+
+inline constexpr int dent_sums = sizeof(Dent<double>) / sizeof(double);
 
 /// What a contact adds to the sums of its bodies.
 template <class T>
 struct Dents {
-  T cover_i, cover_j;        // depth over radius
-  T volume_i, volume_j;      // to S2
-  T area;                    // m a^2 [m^2], to A of both
-  T pressure_i, pressure_j;  // F (R - d)/(3 V) [Pa]
+  Dent<T> i, j;
 };
+
+/// Adds to the sums of a body, which a host stores as numbers.
+inline void add_dent(double* sums, const Dent<double>& dent) noexcept {
+  for (int k = 0; k < dent_sums; ++k) sums[k] += number_at<double>(dent, k);
+}
 
 /// Values of a contact beside the history of its law, whose largest overlap is that without growth. Zeros: a new
 /// contact.
 template <class T>
 struct GrowthState {
-  static constexpr const char* slots[] = {"step_overlap", "added_overlap", "screened_overlap", "raw_screening",
-                                          "screening",    "own_growth",    "dented_area",      "unstored_work",
-                                          "step_growth",  "grown_overlap", "step_pressure",    "body_pressure",
-                                          "broken"};
-  T last;           // u + q of the sums of the step before [m]
-  T added;          // v [m]: u + q extrapolated to the step
-  T shift;          // q [m]
-  T raw;            // least gamma of the sums so far
-  T gamma;          // the same extrapolated to the step, which the force uses
-  T own;            // growth of both bodies by the dents of this contact alone [m]
-  T area;           // m a^2 [m^2]
-  T unstored;       // (1-G) U [J]
-  T last_grown;     // u of the sums of the step before [m]
-  T grown;          // u extrapolated to the step [m], in `added`
-  T last_pressure;  // P of the sums of the step before [Pa]
-  T pressure;       // the same extrapolated to the step, which the force uses
-  T broken;         // 1: the bond of this contact has broken
+  static constexpr const char* slots[] = {
+      "step_overlap", "added_overlap",  "screened_overlap", "raw_loss",      "raw_lean",
+      "screening",    "lean",           "own_growth",       "dented_area",   "unstored_work",
+      "step_growth",  "grown_overlap",  "step_pressure",    "body_pressure", "retreat",
+      "recovered",    "last_recovered", "normal_force",     "broken"};
+  /// Whether a value changes its sign where the bodies change places.
+  static constexpr bool turns(int slot) noexcept { return slot == 4 || slot == 6; }
+
+  T last;            // u + q of the sums of the step before [m]
+  T added;           // v [m]: u + q extrapolated to the step
+  T shift;           // q [m]
+  T raw, raw_lean;   // largest s (1 - gamma) of the sums so far: of both bodies, of i less that of j
+  T screening;       // gamma extrapolated to the step, which the force uses: 1 less that of both, above 0
+  T lean;            // of i less that of j, extrapolated as well
+  T own;             // growth of both bodies by the dents of this contact alone [m]
+  T area;            // m a^2 [m^2]
+  T unstored;        // (1-G) U [J]
+  T last_grown;      // u of the sums of the step before [m]
+  T grown;           // u extrapolated to the step [m], in `added`
+  T last_pressure;   // P of the sums of the step before [Pa]
+  T pressure;        // the same extrapolated to the step, which the force uses
+  T retreat;         // e [m]
+  T recovered;       // m d_e of the peak [m]
+  T last_recovered;  // the same in the step before
+  T force;           // F of the step [N]
+  T broken;          // 1: the bond of this contact has broken
 };
 
 inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double);
@@ -104,13 +143,15 @@ inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double
 /// v [m] of the values of a GrowthState.
 inline double added_overlap_of(const double* state) noexcept { return state[1]; }
 /// gamma of the same; 0: a new contact.
-inline double screening_of(const double* state) noexcept { return state[4]; }
+inline double screening_of(const double* state) noexcept { return state[5]; }
 /// u [m], in v, of the same.
-inline double grown_overlap_of(const double* state) noexcept { return state[9]; }
+inline double grown_overlap_of(const double* state) noexcept { return state[11]; }
 /// P [Pa] of the same.
-inline double body_pressure_of(const double* state) noexcept { return state[11]; }
+inline double body_pressure_of(const double* state) noexcept { return state[13]; }
+/// e [m] of the same.
+inline double retreat_of(const double* state) noexcept { return state[14]; }
 /// Whether the bond of the same has broken.
-inline bool broken_of(const double* state) noexcept { return state[12] > 0.0; }
+inline bool broken_of(const double* state) noexcept { return state[18] > 0.0; }
 
 /// A contact that grows, in one step.
 template <bool wall, class T>
@@ -126,17 +167,31 @@ struct Growing {
   void keep() const noexcept {}
 };
 
-/// What follows from the sums of a body in a step; pressure: its largest so far, which a body without contacts forgets.
-inline BodySums<double> sums_of_step(const double* sums, double pressure) noexcept {
+/// What follows from the sums of a body in a step. A body without contacts forgets its largest pressure so far and the
+/// values of its BodyMemory.
+inline BodySums<double> sums_of_step(const double* sums, double pressure, double* of_body) noexcept {
+  BodyMemory memory;
+  ::memcpy(&memory, of_body, sizeof memory);
   const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
-  return {growth(sums[0], sums[1]), sums[2], touches ? max(pressure, sums[3]) : 0.0};
+  if (!touches) memory = {};
+  memory.full = max(memory.full, sums[4]);
+  double parted = 0.0;
+  if (memory.full > sums[5]) {
+    const double root = sqrt(max(0.0, sums[5] / memory.full));
+    parted = 1.0 - root * sqrt(root);
+  }
+  memory = {memory.full, {parted, memory.parted[0], memory.parted[1]}};
+  ::memcpy(of_body, &memory, sizeof memory);
+  const double* const p = memory.parted;
+  return {growth(sums[0], sums[1]), sums[2], touches ? max(pressure, sums[3]) : 0.0,
+          min(1.0, max(0.0, 2.5 * p[0] - 2.0 * p[1] + 0.5 * p[2]))};
 }
 
 /// The sums of one body, from the array in which a host stores the sums of all bodies; null: without compaction.
 inline BodySums<double> sums_of(const double* all, long body) noexcept {
   if (!all) return {};
   const double* const of_body = all + body_values * body;
-  return {of_body[0], of_body[1], of_body[2]};
+  return {of_body[0], of_body[1], of_body[2], of_body[3]};
 }
 
 /// A contact as a host stores it: radii [m], sums of the bodies, values of its GrowthState; null: a new contact.
@@ -182,25 +237,26 @@ EPDEM_INLINE Depths<T> depths_of(const Growing<wall, T>& c, T overlap) noexcept 
   return {d_i * c.curvature_i, d_j * c.curvature_j};
 }
 
-/// Parts of a contact in the sums of its bodies; overlap: without growth; area: m a^2.
+/// Parts of a contact in the sums of its bodies; overlap: without growth; area: m a^2; way_i, way_j: c d_e; top: F_max.
 template <bool wall, class T>
-EPDEM_INLINE Dents<T> dents_of(const Growing<wall, T>& c, T strain_i, T residual, T area, T overlap, T force) noexcept {
+EPDEM_INLINE Dents<T> dents_of(const Growing<wall, T>& c, T strain_i, T residual, T area, T overlap, T force, T way_i,
+                               T way_j, T top) noexcept {
   const T more = 2.0 * strain_i - 1.0, one = constant<T>(1.0);
   const Depths<T> x = depths_of(c, residual), now = depths_of(c, overlap);
-  const T share = force / (4.0 * pi);
-  const T p_i = share * (c.curvature_i * c.curvature_i) * (1.0 - now.i);
+  T S_i = x.i * x.i, S_j = x.j * x.j;  // volume R d^2 of each dent over R^3
   if constexpr (wall) {
-    return {x.i, T{}, min(one, 1.0 + more) * (x.i * x.i), T{}, area, p_i, T{}};
-  } else {
-    T S_i = x.i * x.i, S_j = x.j * x.j;  // volume R d^2 of each dent over R^3
-    if (any(more != 0.0)) {  // the weaker body has of the other's dent what it has more than half of the strain
-      const T ratio = c.radius_j * c.curvature_i, cube = ratio * ratio * ratio;
-      const T to_i = max(T{}, more) * cube * S_j, to_j = max(T{}, -more) * S_i / cube;
-      S_i = min(one, 1.0 + more) * S_i + to_i;
-      S_j = min(one, 1.0 - more) * S_j + to_j;
-    }
-    return {x.i, x.j, S_i, S_j, area, p_i, share * (c.curvature_j * c.curvature_j) * (1.0 - now.j)};
+    S_i = min(one, 1.0 + more) * S_i;
+  } else if (any(more != 0.0)) {  // the weaker body has of the other's dent what it has more than half of the strain
+    const T ratio = c.radius_j * c.curvature_i, cube = ratio * ratio * ratio;
+    const T to_i = max(T{}, more) * cube * S_j, to_j = max(T{}, -more) * S_i / cube;
+    S_i = min(one, 1.0 + more) * S_i + to_i;
+    S_j = min(one, 1.0 - more) * S_j + to_j;
   }
+  const T share = force / (4.0 * pi);
+  const auto pressure = [&](T curvature, T depth) { return share * (curvature * curvature) * (1.0 - depth); };
+  Dents<T> d{{x.i, S_i, area, pressure(c.curvature_i, now.i), way_i * top, way_i * force}, {}};
+  if constexpr (!wall) d.j = {x.j, S_j, area, pressure(c.curvature_j, now.j), way_j * top, way_j * force};
+  return d;
 }
 
 /// Pressure of the bodies [Pa], weighted by their growth.
@@ -235,27 +291,31 @@ EPDEM_INLINE Point<T> grown_point(const Law& law, T R_star, T b, T grown, T pres
   return p;
 }
 
-/// gamma of a contact of this own area [m^2] in the sums, where it is above 0; without its limit 1.
+/// s (1 - gamma) of both sides of a contact of this own area [m^2] in the sums, where it is above 0; x: its depths.
 template <bool wall, class T>
-EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies, T own) noexcept {
-  const auto lost = [](T others, T curvature) {  // of 1 by the constriction
-    const T free = max(T{}, 1.0 - 0.5 * sqrt(others) * curvature);
-    return 1.0 - free * sqrt(free);
+EPDEM_INLINE Depths<T> screened(const Growing<wall, T>& c, const BodyShares<T>& bodies, T own, Depths<T> x) noexcept {
+  const T root = sqrt(own);
+  const auto side = [&](T all, T curvature, T compliance, T bulk, T depth) {
+    // the root has no finite slope at 0, and the sums of an only contact may differ from its own area by round-off
+    const T apart = all - own, others = select(apart > least_others * own, apart, T{});
+    const T free = max(T{}, 1.0 - 0.5 * sqrt(others) * curvature);  // of 1 by the constriction
+    const T loss = compliance * (1.0 - free * sqrt(free)) - bulk * others * curvature * (1.0 - depth) / root;
+    return min((1.0 - least_screening) * compliance, max(T{}, loss));
   };
-  // the root has no finite slope at 0, and the sums of an only contact may differ from its own area by round-off
-  const auto beside = [&](T all) {
-    const T others = all - own;
-    return select(others > least_others * own, others, T{});
-  };
-  const T others_i = beside(c.i.area);
-  T gamma = 1.0 - bodies.compliance_i * lost(others_i, c.curvature_i);
-  T bulk = bodies.bulk_i * others_i * c.curvature_i;
-  if constexpr (!wall) {
-    const T others_j = beside(c.j.area);
-    gamma = gamma - (1.0 - bodies.compliance_i) * lost(others_j, c.curvature_j);
-    bulk = bulk + bodies.bulk_j * others_j * c.curvature_j;
-  }
-  return max(constant<T>(least_screening), gamma + bulk / sqrt(own));
+  const T s_i = bodies.compliance_i;
+  if constexpr (wall) return {side(c.i.area, c.curvature_i, s_i, bodies.bulk_i, x.i), T{}};
+  return {side(c.i.area, c.curvature_i, s_i, bodies.bulk_i, x.i),
+          side(c.j.area, c.curvature_j, 1.0 - s_i, bodies.bulk_j, x.j)};
+}
+
+/// All numbers 0 where the mask says so.
+template <class T, class M, class Numbers>
+EPDEM_INLINE void zero_where(M mask, Numbers& numbers) noexcept {
+#ifndef __CUDACC__
+#pragma GCC unroll 64
+#endif
+  for (std::size_t k = 0; k < sizeof(Numbers) / sizeof(T); ++k)
+    put_number(numbers, k, select(mask, T{}, number_at<T>(numbers, k)));
 }
 
 /// A bond after a step; zeros where it is broken.
@@ -291,7 +351,7 @@ EPDEM_INLINE Added<T> added_overlap(const Growing<wall, T>& c, bool repeats) noe
   const GrowthState<T>& s = c.state;
   if (repeats) return {s.last, s.added, s.last_grown, s.grown};
   const T u = max(T{}, detail::grown(c, c.i.growth, c.j.growth) - s.own), now = u + s.shift;
-  const auto known = s.raw > 0.0;
+  const auto known = s.screening > 0.0;
   const T added = select(known, max(now, 2.0 * now - s.last), now);
   // where a dent ends, u falls at once: no further fall follows from it
   return {now, added, u, min(added, select(known, max(u, 2.0 * u - s.last_grown), u))};
@@ -309,10 +369,10 @@ template <class Law>
 struct GrownStep {
   State<Law> before;                     // of the overlap with growth
   Step<Law> step;                        // the same
-  Number<Law> overlap;                   // with growth [m]
-  Number<Law> reached;                   // largest overlap without growth before the step [m]
+  Number<Law> overlap;                   // with growth and retreat [m]
+  Number<Law> reached;                   // largest overlap without growth, less the retreat, before the step [m]
   Number<Law> delta_max;                 // the same after the step
-  Number<Law> softness;                  // G
+  Number<Law> soft;                      // 1 - G
   Number<Law> whole;                     // force of the law alone at a peak that this step reaches [N]
   Number<Law> grip;                      // pull at which the bond breaks [N], 0: none or broken
   Number<Law> stretched, bond_loss;      // elastic energy of the bond; what it lost for good in this step [J]
@@ -324,83 +384,117 @@ struct GrownStep {
 template <bool wall, class Law, class T = Number<Law>>
 EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodies, T R_star, const State<Law>& before,
                                        T overlap, Growing<wall, T>& c, bool repeats) noexcept {
-  const T zero{}, one = constant<T>(1.0);
-  GrownStep<Law> s{};
-  s.last = c.state;
-  const auto known = c.state.raw > 0.0;
-  const T raw_before = select(known, c.state.raw, one);
-  T raw = raw_before, gamma = select(known, c.state.gamma, one);
+  const T zero{};
+  GrownStep<Law> s;
+  s.whole = s.grip = s.stretched = s.bond_loss = zero;
+  const GrowthState<T>& last = s.last;
+#ifndef __CUDACC__
+#pragma GCC unroll 64
+#endif
+  for (int k = 0; k < growth_values; ++k) put_number(s.last, k, number_at<T>(c.state, k));
+  const auto known = last.screening > 0.0;
   s.reached = select(known, before.delta_max, min(overlap, zero));
-  s.delta_max = select((overlap < s.reached) & (s.reached < no_overlap), s.reached, overlap);
   const Added<T> v = added_overlap(c, repeats);
-  s.overlap = overlap + v.extrapolated;
-  T pressure_now = c.state.last_pressure, pressure = c.state.pressure;
+  T pressure_now = last.last_pressure, pressure = last.pressure;
   if (!repeats) {
     pressure_now = detail::body_pressure(c);
-    pressure = max(pressure_now, 2.0 * pressure_now - select(known, c.state.last_pressure, pressure_now));
+    pressure = max(pressure_now, 2.0 * pressure_now - select(known, last.last_pressure, pressure_now));
   }
-  const T m = detail::yielded_share(law, R_star, s.delta_max + v.extrapolated);
+  // an only contact of a body has exactly no loss there: round-off would give the body a Q without sense
+  const auto side = [](T twice) { return select(twice > 2.0 * least_loss, 0.5 * twice, T{}); };
+  const auto sides = [&](T both, T lean) { return detail::Depths<T>{side(both + lean), side(both - lean)}; };
+  const T lost = select(known, 1.0 - last.screening, zero);
+  detail::Depths<T> raw = sides(last.raw, last.raw_lean), loss = sides(lost, last.lean);
+  T retreat = last.retreat;
   if (!repeats) {
-    const auto screened = (m > 0.0) & (c.state.area > 0.0);
-    if (any(screened)) raw = select(screened, min(raw, detail::screening(c, bodies, c.state.area)), raw);
-    gamma = min(gamma, max(constant<T>(least_screening), min(raw, 2.0 * raw - raw_before)));
+    const auto dented = last.area > 0.0;
+    if (any(dented)) {
+      const detail::Depths<T> x = detail::depths_of(c, max(zero, s.reached));
+      const detail::Depths<T> found = detail::screened(c, bodies, only(dented, last.area), x);
+      const auto follow = [&](T now, T share, T& raw_loss, T& used) {
+        const T rises = max(raw_loss, now);
+        used = select(dented, max(used, min((1.0 - least_screening) * share, 2.0 * rises - raw_loss)), used);
+        raw_loss = select(dented, rises, raw_loss);
+      };
+      follow(found.i, bodies.compliance_i, raw.i, loss.i);
+      T parted = loss.i * c.i.parted;
+      if constexpr (!wall) {
+        follow(found.j, 1.0 - bodies.compliance_i, raw.j, loss.j);
+        parted = parted + loss.j * c.j.parted;
+      }
+      retreat = zero;
+      if (any(parted > 0.0))
+        retreat = select(dented, parted * max(zero, 2.0 * last.recovered - last.last_recovered), zero);
+    }
   }
-  const T soft = (1.0 - gamma) * m;
-  s.softness = 1.0 - soft;
+  T level = overlap - retreat;  // a step that is repeated finds contacts at their largest overlap
+  if (repeats) level = select(fabs(level - s.reached) < 1e-9 * fabs(s.reached), s.reached, level);
+  s.delta_max = select((level < s.reached) & (s.reached < no_overlap), s.reached, level);
+  s.overlap = level + v.extrapolated;
+  const T m = detail::yielded_share(law, R_star, s.delta_max + v.extrapolated);
+  s.soft = (loss.i + loss.j) * m;
 
   s.before = before;
   s.before.delta_max = s.reached + v.extrapolated;
   const auto kept = [&](auto falls) __attribute__((always_inline)) {
-    const GrowthState<T>& last = c.state;
     return falls & known & (v.extrapolated == last.added) & (v.grown == last.grown) & (pressure == last.pressure);
   };
   const auto load = [&](T b) __attribute__((always_inline)) {
     return detail::grown_point(law, R_star, b, v.grown, pressure, s.whole);
   };
-  s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap, kept, load);
+  s.step = step_of_peak(law, R_star, s.before, s.overlap, kept, load);
 
   const Point<T>& peak = s.step.after.point;
-  const auto dented = m > 0.0, parts = !(s.overlap > 0.0);
+  const auto dented = m > 0.0, parts = !(overlap + v.extrapolated > 0.0);
   const Recovery<T> back = recovery(law.E_star, peak);
-  const T residual = max(zero, s.delta_max) - s.softness * back.overlap;
+  const T residual = max(zero, s.delta_max) - (1.0 - s.soft) * back.overlap;
   const T area = select(dented, m * (peak.radius * peak.radius), zero);
+  const T recovered = select(dented, m * back.overlap, zero);
   c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area, overlap,
-                             s.step.force);
+                             s.step.force, loss.i * recovered, loss.j * recovered, peak.force);
   if (!repeats) {
     const T own =
-        detail::grown(c, growth(c.dents.cover_i, c.dents.volume_i), growth(c.dents.cover_j, c.dents.volume_j));
-    const T unstored = select(dented, soft * back.work, zero);
+        detail::grown(c, growth(c.dents.i.cover, c.dents.i.volume), growth(c.dents.j.cover, c.dents.j.volume));
+    const T unstored = select(dented, s.soft * back.work, zero);
     const T before_force = select(c.state.area > 0.0, before.point.force, peak.force);
     const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
-    c.state = {v.now,       v.extrapolated, c.state.shift + shift, raw,      gamma,         own, area, unstored,
-               v.now_grown, v.grown,        pressure_now,          pressure, c.state.broken};
+    c.state = {v.now,
+               v.extrapolated,
+               last.shift + shift,
+               raw.i + raw.j,
+               raw.i - raw.j,
+               1.0 - (loss.i + loss.j),
+               loss.i - loss.j,
+               own,
+               area,
+               unstored,
+               v.now_grown,
+               v.grown,
+               pressure_now,
+               pressure,
+               retreat,
+               recovered,
+               select(last.area > 0.0, last.recovered, recovered),
+               s.step.force,
+               c.state.broken};
   }
   if constexpr (!wall)
     if (rarely(any(c.bond > 0.0))) {
-      const T stretch = s.step.after.delta_max - s.softness * back.overlap - s.overlap;
+      const T stretch = s.step.after.delta_max - back.overlap - s.overlap;
       const auto whole = (c.bond > 0.0) & dented & (c.state.broken == 0.0);
-      const auto bond = detail::hold(c.bond, law.E_star / s.softness, peak.radius, stretch, whole, parts);
+      const auto bond = detail::hold(c.bond, law.E_star, peak.radius, stretch, whole, parts);
       s.step.force = s.step.force - bond.pull;
       s.step.radius = select(bond.grip > 0.0, peak.radius, s.step.radius);
       s.grip = bond.grip, s.stretched = bond.stretched, s.bond_loss = bond.loss;
-      if (!repeats) c.state.broken = select(whole & !(bond.grip > 0.0), one, c.state.broken);
+      if (!repeats) c.state.broken = select(whole & !(bond.grip > 0.0), constant<T>(1.0), c.state.broken);
     }
   // a new contact that is looked at before a step has no growth of its own yet that it could take from its sums
   if (const auto undented = repeats ? parts | !known : parts; any(undented)) {
-    const Dents<T>& d = c.dents;
-    c.dents = {select(undented, zero, d.cover_i),   select(undented, zero, d.cover_j),
-               select(undented, zero, d.volume_i),  select(undented, zero, d.volume_j),
-               select(undented, zero, d.area),      select(undented, zero, d.pressure_i),
-               select(undented, zero, d.pressure_j)};
+    detail::zero_where<T>(undented, c.dents);
   }
   if (any(parts)) {
     s.delta_max = select(parts, zero, s.delta_max);
-    const GrowthState<T>& g = c.state;
-    c.state = {select(parts, zero, g.last),  select(parts, zero, g.added),         select(parts, zero, g.shift),
-               select(parts, zero, g.raw),   select(parts, zero, g.gamma),         select(parts, zero, g.own),
-               select(parts, zero, g.area),  select(parts, zero, g.unstored),      select(parts, zero, g.last_grown),
-               select(parts, zero, g.grown), select(parts, zero, g.last_pressure), select(parts, zero, g.pressure),
-               select(parts, zero, g.broken)};
+    detail::zero_where<T>(parts, c.state);
   }
   s.state = c.state;
   return s;
@@ -411,47 +505,50 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
 template <class Law, class T = Number<Law>>
 [[gnu::noinline]] NormalEnergies<T> grown_energies(const Law& law, T R_star, const Point<T>& peak_before,
                                                    const GrownStep<Law>& s, T overlap, T closing) noexcept {
-  const auto known = s.last.raw > 0.0, was_dented = s.last.area > 0.0, dented = s.state.area > 0.0;
-  const T v = s.state.added, v0 = select(known, s.last.added, v), b = s.delta_max + v;
-  const T soft_before = 1.0 - (1.0 - s.last.gamma) * detail::yielded_share(law, R_star, s.reached + v0);
+  const auto known = s.last.screening > 0.0, was_dented = s.last.area > 0.0, dented = s.state.area > 0.0;
+  const T one = constant<T>(1.0), zero{};
+  const T v = s.state.added, v0 = select(known, s.last.added, v), b = s.delta_max + v, b0 = s.reached + v0;
+  const T less = v - s.state.retreat, less0 = v0 - s.last.retreat;
   const Point<T>& peak = s.step.after.point;
-  const auto stored = [&](auto yielded, const Point<T>& p, T softness, T delta_max, T delta) {
-    const T at = max(T{}, delta), one = constant<T>(1.0);
-    if (!any(!yielded)) return stored_work(law.E_star / softness, p, delta_max, at);
-    const Point<T> safe = select(yielded, p, Point<T>{one, one, T{}});
-    return select(yielded, stored_work(law.E_star / softness, safe, delta_max, at), hertz_work(law.E_star, R_star, at));
+  const Point<T> safe = select(dented, peak, Point<T>{one, one, zero});
+  const Point<T> safe0 = select(was_dented, peak_before, safe);
+  const auto stored = [&](auto yielded, const Point<T>& p, T delta_max, T delta) {
+    const T at = max(zero, delta);
+    if (!any(!yielded)) return stored_work(law.E_star, p, delta_max, at);
+    return select(yielded, stored_work(law.E_star, p, delta_max, at), hertz_work(law.E_star, R_star, at));
   };
   // below the peak the overlap moves on a branch, which the sums change: the change at the middle of the step
-  const T middle = min(overlap - 0.5 * closing, select(was_dented, s.reached, overlap));
-  const auto yields = dented & (overlap >= s.reached);
+  const T middle =
+      min(overlap - 0.5 * closing, select(was_dented, s.reached + min(s.last.retreat, s.state.retreat), overlap));
+  const auto yields = dented & (overlap - s.state.retreat >= s.reached);
   T lost{}, held{};
   if (any(!yields)) {
-    held = stored(dented, peak, s.softness, b, s.overlap);
-    lost = stored(was_dented, peak_before, soft_before, s.reached + v0, middle + v0) -
-           stored(dented, peak, s.softness, b, middle + v);
+    held = stored(dented, safe, b, s.overlap);
+    lost = stored(was_dented, safe0, b0, middle + less0) - stored(dented, safe, b, middle + less);
   }
   if (any(yields)) {
-    const T delta_Y = law.elastic_overlap(R_star), b0 = select(known, s.reached + v0, T{});
-    const T from = select(yields, max(T{}, b0), delta_Y), to = select(yields, b, delta_Y);
+    const T delta_Y = law.elastic_overlap(R_star);
+    const T from = select(yields, max(zero, select(known, b0, zero)), delta_Y), to = select(yields, b, delta_Y);
     T F0 = hertz_point(law.E_star, R_star, from).force, U0 = hertz_work(law.E_star, R_star, from);
-    if (any(was_dented)) {
-      const Point<T> safe = select(was_dented, peak_before, peak);
-      F0 = select(was_dented, safe.force, F0);
-      U0 = select(was_dented, recovered_work(law.E_star, safe), U0);
-    }
-    const T U = recovered_work(law.E_star, select(yields, peak, peak_before));
+    F0 = select(was_dented, safe0.force, F0);
+    U0 = select(was_dented, recovered_work(law.E_star, safe0), U0);
+    const T U = recovered_work(law.E_star, safe);
     // beside the force of the law alone, the force of growth is smooth
-    T alone0 = F0, alone = peak.force;
+    T alone0 = F0, alone = safe.force;
     const auto grew = yields & was_dented & (s.last.grown > 0.0), grows = yields & (s.state.grown > 0.0);
     if (any(grew)) alone0 = select(grew, law.load(R_star, only(grew, from)).force, F0);
-    if (any(grows)) alone = select(grows, s.whole, peak.force);
-    const T of_growth = 0.5 * (to - from) * ((F0 - alone0) + (peak.force - alone));
+    if (any(grows)) alone = select(grows, s.whole, safe.force);
+    const T of_growth = 0.5 * (to - from) * ((F0 - alone0) + (safe.force - alone));
     const T work = law.work(R_star, from, to, alone0, alone) + of_growth + U0 - U;
-    const T paid = 0.5 * (F0 + peak.force) * (v - v0);
-    lost = select(yields, work - paid + (s.state.unstored - s.last.unstored), lost);
-    held = select(yields, s.softness * U, held);
+    lost = select(yields, work - 0.5 * (s.last.force + safe.force) * (less - less0), lost);
+    held = select(yields, U, held);
   }
-  return {lost + s.bond_loss, held + s.stretched, T{}};
+  // what the bodies take of the energy at the stationary Q: 3/7 N Q^(7/3) is the sum of 3/7 Q c d_e F
+  const auto share = [&](const GrowthState<T>& at) {
+    return select(at.area > 0.0, 3.0 / 7.0 * at.force * ((1.0 - at.screening) * at.recovered - at.retreat), zero);
+  };
+  const T taken = share(s.state), taken0 = share(s.last);
+  return {lost + (taken - taken0) + s.bond_loss, held - taken + s.stretched, T{}};
 }
 
 }  // namespace epdem

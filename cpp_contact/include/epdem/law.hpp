@@ -65,13 +65,12 @@ inline auto plausible(const Point<T>& p) noexcept {
          (p.flatness <= 1.0);
 }
 
-/// As `step`, with another modulus [Pa] than E* below the largest overlap; kept: of the contacts below it those whose
-/// stored peak belongs to it; load: the backbone above the elastic overlap.
+/// As `step`; kept: of the contacts below their largest overlap those whose stored peak belongs to it; load: the
+/// backbone above the elastic overlap.
 template <class Law, class Kept, class Load>
-inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law> R_star, const State<Law>& before,
-                                 Number<Law> delta, Kept kept, Load load) noexcept {
+inline Step<Law> step_of_peak(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta,
+                              Kept kept, Load load) noexcept {
   using T = Number<Law>;
-  (void)modulus;
   (void)kept;
   (void)load;
   const auto touches = delta > 0.0;
@@ -98,7 +97,7 @@ inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law
       } else {
         peak = load(delta_max);
       }
-      if (any(falls)) peak = select(falls, unload<Law::flattens>(modulus, peak, delta_max, delta), peak);
+      if (any(falls)) peak = select(falls, unload<Law::flattens>(law.E_star, peak, delta_max, delta), peak);
       now = peak;
     }
     if (any(elastic)) now = select(elastic, hertz_point(law.E_star, R_star, delta), now);
@@ -117,7 +116,7 @@ inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& befo
     else
       return Point<Number<Law>>{};
   };
-  return step_of_modulus(law, law.E_star, R_star, before, delta, [](auto falls) { return falls; }, load);
+  return step_of_peak(law, R_star, before, delta, [](auto falls) { return falls; }, load);
 }
 
 /// The same with a closing speed at the half step times the time step [m], which only laws with adhesion ask for.

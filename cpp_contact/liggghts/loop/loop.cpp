@@ -216,9 +216,9 @@ struct Beside {
   double* const dents;
   double *const work, *const energy, *const loaded, *const parted;
   const bool gives_back;
-  double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{}, pressure_i{};
+  double work_i{}, energy_i{}, loaded_i{}, dents_i[dent_sums] = {};
   long i = 0;
-  double* const others;  // eight numbers of a ghost, which its owner computes; apart: the sums stay in registers
+  double* const others;  // numbers of a ghost, which its owner computes; apart: the sums stay in registers
 
   Beside(const Block& block, const Plan& plan, double* ghost)
       : b(block),
@@ -233,17 +233,14 @@ struct Beside {
   EPDEM_INLINE void begin(long body) {
     i = body;
     if constexpr (tallies) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
-    if constexpr (grown) {
-      const double* const sum = dents + dent_sums * i;
-      cover_i = sum[0], volume_i = sum[1], area_i = sum[2], pressure_i = sum[3];
-    }
+    if constexpr (grown) std::copy_n(dents + dent_sums * i, dent_sums, dents_i);
   }
 
   EPDEM_INLINE void add(int k, long j, bool owned) {
     if constexpr (tallies) {
       const double lost = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0,
                    stored = 0.5 * b.stored_energy.a[k];
-      const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
+      const bool bears = b.contact_radius.a[k] > 0.0;
       work_i += lost;
       energy_i += stored;
       loaded_i += bears;
@@ -256,24 +253,17 @@ struct Beside {
       }
     }
     if constexpr (grown) {
-      cover_i += b.cover_i.a[k];
-      volume_i += b.volume_i.a[k];
-      area_i += b.dented_area.a[k];
-      pressure_i += b.pressure_i.a[k];
       double* const dents_j = owned ? dents + dent_sums * j : others + 4;
-      dents_j[0] += b.cover_j.a[k];
-      dents_j[1] += b.volume_j.a[k];
-      dents_j[2] += b.dented_area.a[k];
-      dents_j[3] += b.pressure_j.a[k];
+      for (int c = 0; c < dent_sums; ++c) {
+        dents_i[c] += b.dents_i[c].a[k];
+        dents_j[c] += b.dents_j[c].a[k];
+      }
     }
   }
 
   EPDEM_INLINE void end(long) {
     if constexpr (tallies) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
-    if constexpr (grown) {
-      double* const sum = dents + dent_sums * i;
-      sum[0] = cover_i, sum[1] = volume_i, sum[2] = area_i, sum[3] = pressure_i;
-    }
+    if constexpr (grown) std::copy_n(dents_i, dent_sums, dents + dent_sums * i);
   }
 };
 

@@ -101,11 +101,12 @@ void WallLoop::scatter() {
       const auto part = [k](const auto& lines) { return Vec<double>{lines[0].a[k], lines[1].a[k], lines[2].a[k]}; };
       add_couple(i, mesh_[k], b.overlap.a[k], part(b.from_wall), part(b.force), part(b.torque_i));
     }
-    if (plan_->growth) plan_->growth->add(i, b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k], b.pressure_i.a[k]);
-    if (plan_->heat) plan_->heat->add_wall(i, mesh_[k], *wall_, b.contact_radius.a[k]);
+    if (plan_->growth)
+      for (int c = 0; c < dent_sums; ++c) plan_->growth->sums()[dent_sums * long(i) + c] += b.dents_i[c].a[k];
+    const double radius = b.contact_radius.a[k];
+    if (plan_->heat) plan_->heat->add_wall(i, mesh_[k], *wall_, radius);
     if (!plan_->tally) continue;
-    const double stored = b.stored_energy.a[k];
-    plan_->tally->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);
+    plan_->tally->credit(i, b.plastic_work_step.a[k], b.stored_energy.a[k], radius > 0.0);
     if (plan_->adds_friction)
       plan_->tally->add_friction(true, b.friction_work.a[k], b.spring_energy.a[k], {i, i, atom->nlocal});
   }

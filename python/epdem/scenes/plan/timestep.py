@@ -22,9 +22,10 @@ def bed_share(x: Experiment, *, sticking: bool, screening: float = 1.0) -> float
     """Share of the stable step of the contact `x` alone that a step in a bed of such contacts may have.
 
     Velocity Verlet is stable up to a half of it in a dense packing of central springs; where contacts stick, up to
-    `sticking_packing` (0.246 at nu = 0.3). `screening` divides the normal stiffness alone.
+    `sticking_packing` (0.246 at nu = 0.3). `screening` divides the normal stiffness alone, and bodies
+    retreat one step later (`times.retreating_packing`).
     """
-    stable = times.DENSE_PACKING
+    stable = times.retreating_packing(screening)
     if sticking:
         stable = min(stable, float(times.sticking_packing(screening * 4.0 * x.G_star / x.E_star)))
     return MARGIN * stable

@@ -29,7 +29,8 @@ UNITS = quantities.UNITS | {  # of the columns that have one
     column: unit
     for unit, columns in {
         "s": "begin_time end_time",
-        "m": "overlap added_overlap grown_overlap contact_radius delta_max residual_overlap dent_radius wear height",
+        "m": "overlap added_overlap grown_overlap retreat contact_radius delta_max residual_overlap dent_radius wear "
+        "height",
         "m^2": "area",
         "S": "conductance",
         "W": "heat_flow",
@@ -150,7 +151,7 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     return np.cumsum(rows["wall_power"].to_numpy() * np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0))
 
 
-GROWTH = ["added_overlap", "screening", "grown_overlap", "body_pressure"]  # that an engine gives with compaction
+GROWTH = ["added_overlap", "screening", "grown_overlap", "body_pressure", "retreat"]  # of an engine, with compaction
 NORMAL, FORCE = ([f"{name}_{axis}" for axis in "xyz"] for name in ("normal", "force"))  # of the engine
 BY_LAW = ["force", "contact_radius", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
@@ -189,7 +190,8 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     """
     raw = touching(p, raw)
     before = raw["delta_max"] if p.model.yields else raw["overlap"]  # engines may give that before the step
-    raw = raw.assign(delta_max=np.maximum(before, raw["overlap"]))
+    retreat = raw["retreat"] if p.model.compaction else 0.0
+    raw = raw.assign(delta_max=np.maximum(before, raw["overlap"] - retreat))
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
     turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary
@@ -210,9 +212,10 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     added = raw["added_overlap"] if p.model.compaction else 0.0
     known = pd.DataFrame({"i": first["type"], "j": second["type"], "radius": first["radius"]})
     known["R_star"] = reduced(first["radius"], second["radius"])
-    known["overlap"], known["largest"] = raw["overlap"] + added, raw["delta_max"] + added
+    retreat = raw["retreat"] if p.model.compaction else 0.0
+    known["overlap"], known["largest"] = raw["overlap"] - retreat + added, raw["delta_max"] + added
     known["attached"] = raw["attached"]
-    for name, none in (("screening", 1.0), ("grown_overlap", 0.0), ("body_pressure", 0.0)):
+    for name, none in (("screening", 1.0), ("grown_overlap", 0.0), ("body_pressure", 0.0), ("retreat", 0.0)):
         known[name] = raw[name] if p.model.compaction else none
     known["screening"] = known["screening"].where(known["screening"] > 0.0, 1.0)  # 0: a new contact
     table = raw[_columns_of_engine(p)].join(energies(p, known))
@@ -313,7 +316,7 @@ def _unit(vectors: Array) -> Array:
 
 def energies(p: ScenePlan, contacts: pd.DataFrame) -> pd.DataFrame:
     """The columns BY_LAW of contacts, of which these are known: i, j (types), R_star, radius of i [m], overlap, largest
-    [m], attached, and of GROWTH screening, grown_overlap [m], body_pressure [Pa]."""
+    [m], attached, and of GROWTH all but added_overlap, in SI; overlap: of the law, with growth and retreat."""
     out = pd.DataFrame(0.0, index=contacts.index, columns=BY_LAW)
     for (i, j), of_types in contacts.groupby(["i", "j"]):
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
@@ -326,13 +329,14 @@ def energies(p: ScenePlan, contacts: pd.DataFrame) -> pd.DataFrame:
 def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Array, ...]:
     """The columns BY_LAW of contacts of one curvature_share.
 
-    A screened contact gives back G = 1 - (1 - gamma) (1 - alpha_Y/b) of the overlap that it would give back alone from
-    its largest overlap b. Growth changes the largest force by a factor k: the force is k times the force of the contact
-    alone at b - (b - overlap)/(k G), the elastic energy k^2 G times its energy there.
+    Growth changes the largest force by a factor k: the force is k times the force of the contact alone at b - (b -
+    overlap)/k, b: largest overlap, the energy that it stores k^2 times its energy there. Of what it recovers, k d, its
+    bodies take the part c = (1 - gamma) (1 - alpha_Y/b): the dent is b - (1 - c) k d, and with the retreat e the
+    contact holds 3/7 F (c k d - e) less.
     """
-    R, radius, overlap, largest, screening, grown, pressure = (
+    R, radius, overlap, largest, screening, grown, pressure, retreat = (
         contacts[name].to_numpy(float)
-        for name in ("R_star", "radius", "overlap", "largest", "screening", "grown_overlap", "body_pressure")
+        for name in ("R_star", "radius", "overlap", "largest", "screening", "grown_overlap", "body_pressure", "retreat")
     )
     largest = np.maximum(largest, overlap)
     if spec.adheres:
@@ -346,8 +350,7 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
         if grown.any()
         else np.ones(len(R))
     )
-    given_back = factor * (1.0 - (1.0 - screening) * yielded)
-    overlap = largest - (largest - overlap) / given_back
+    overlap = largest - (largest - overlap) / factor
     force, radius, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
     residual = np.asarray(theory.residual_overlap(largest), float) * (plastic > 0.0)
@@ -359,8 +362,9 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
     elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
     radius = np.where(force > 0.0, radius, 0.0)
     dent = np.where(plastic > 0.0, dent, 0.0)
-    residual = largest - given_back * (largest - residual)
-    return factor * force, radius, residual, dent, plastic, factor * given_back * elastic
+    force, back, part = factor * force, factor * (largest - residual), (1.0 - screening) * yielded
+    taken = 3.0 / 7.0 * force * np.where(plastic > 0.0, part * back - retreat, 0.0)
+    return force, radius, largest - (1.0 - part) * back, dent, plastic, factor**2 * elastic - taken
 
 
 def _of_growth(law: Law, R: Array, largest: Array, grown: Array, pressure: Array, yielded: Array) -> Array:

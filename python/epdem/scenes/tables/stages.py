@@ -60,8 +60,7 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     reached, or of the peak where the peak is farther above the stage. pressure, opposite_pressure: at that step in
     phases with `until`, else means of the last row of the phase; peak: the largest in the phase. springback: axial
     strain since the end of the last phase of loading, in phases in which the punch moves away. radial_pressure: of the
-    frame at the end of the phase, NaN after a release, where the law leaves too much of it. work, plastic, elastic: as
-    in the energy balance.
+    frame at the end of the phase. work, plastic, elastic: as in the energy balance.
     """
     stages, rows, phases = p.stages, tables["rows"].set_index("step"), p.phase_table
     speeds = [towards(p, phase) for phase in p.phases]
@@ -90,12 +89,11 @@ def table(p: ScenePlan, tables: Tables) -> pd.DataFrame:
     found["porosity"] = 1.0 - found["relative_density"]
     speed = pd.Series([speeds[n] for n in chosen.index])
     loaded = found["height"].where(speed > 0.0).ffill()
-    under_load = speed.where(speed != 0.0).ffill() > 0.0
     found["springback"] = (found["height"] / loaded - 1.0).where(speed < 0.0)
     if stages.sides and "contacts" in tables:
         loads = normal_forces(p, tables["contacts"]).groupby("step")["load"].sum()
         normal = loads.reindex(ends, fill_value=0.0).to_numpy()
-        found["radial_pressure"] = (normal / (stages.perimeter * found["height"])).where(under_load)
+        found["radial_pressure"] = normal / (stages.perimeter * found["height"])
         axial = 0.5 * (found["pressure"] + found["opposite_pressure"])
         found["radial_over_axial"] = found["radial_pressure"] / axial.where(axial > 0.0)
     found["work"] = np.interp(ends, tables["rows"]["step"], work_of_walls(p, tables["rows"]))

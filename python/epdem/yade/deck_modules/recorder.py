@@ -13,7 +13,7 @@ from yade.wrapper import PyRunner
 from .spheres import Spheres, remove
 
 KINDS = ("force", "torque")  # of loads
-GROWTH = ("addedOverlap", "screening", "grownOverlap", "bodyPressure")  # of contacts with compaction
+GROWTH = ("addedOverlap", "screening", "grownOverlap", "bodyPressure", "retreat")  # of contacts with compaction
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, times w, so far
 
