@@ -115,7 +115,7 @@ void FixWall::init() {
   reach_ = neighbor->skin;
   for (const int type : types_of_group())
     checked_gap(lmp, place_, *words_.models.law, constants_.data() + most_constants * type,
-                pair_->largest_radius(type));
+                pair_->smallest_radius(type), pair_->largest_radius(type));
 }
 
 /// Types with a material, and types of spheres that are there: without a material they are an error.

@@ -160,18 +160,23 @@ void PairEp::init_style() {
   pass_ = {};
 }
 
-/// The largest radius of each type, also of those that fixes will add.
+/// The largest and smallest radius of each type; of those that fixes will add LAMMPS knows the largest.
 void PairEp::measure_radii() {
-  std::vector<double> mine(width_, 0.0);
-  for (int i = 0; i < atom->nlocal; ++i) mine[atom->type[i]] = std::max(mine[atom->type[i]], atom->radius[i]);
+  std::vector<double> mine(width_, 0.0), least(width_, HUGE_VAL);
+  const auto take = [&](int type, double radius) {
+    mine[type] = std::max(mine[type], radius);
+    least[type] = std::min(least[type], radius);
+  };
+  for (int i = 0; i < atom->nlocal; ++i) take(atom->type[i], atom->radius[i]);
   for (const char* style : {"^pour", "^deposit"})
     for (Fix* fix : modify->get_fix_by_style(style))
       for (int type = 1; type < width_; ++type) {
         int itype = type;
-        if (void* radius = fix->extract("radius", itype))
-          mine[type] = std::max(mine[type], *static_cast<double*>(radius));
+        if (void* radius = fix->extract("radius", itype)) take(type, *static_cast<double*>(radius));
       }
   largest_.assign(width_, 0.0);
+  smallest_.assign(width_, HUGE_VAL);
+  MPI_Allreduce(least.data(), smallest_.data(), width_, MPI_DOUBLE, MPI_MIN, world);
   MPI_Allreduce(mine.data(), largest_.data(), width_, MPI_DOUBLE, MPI_MAX, world);
 }
 
@@ -197,7 +202,8 @@ double PairEp::init_one(int i, int j) {
   pass_.viscous |= constants[kernels::dashpot] > 0.0;
   const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
   if (models_.compaction) return (1.0 + growth_reach) * (largest_[i] + largest_[j]);
-  return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, R_star);
+  const double least = 1.0 / (1.0 / smallest_[i] + 1.0 / smallest_[j]);
+  return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, least, R_star);
 }
 
 void PairEp::set_pass(bool counts) {

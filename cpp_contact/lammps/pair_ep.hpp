@@ -40,6 +40,7 @@ class PairEp : public LAMMPS_NS::Pair {
   bool energies() const { return energies_; }
   bool strain() const { return strain_; }
   double largest_radius(int type) const { return largest_[type]; }
+  double smallest_radius(int type) const { return smallest_[type]; }
 
  private:
   struct PairOfTypes {
@@ -63,8 +64,8 @@ class PairEp : public LAMMPS_NS::Pair {
 
   int width_ = 0;  // number of types + 1
   std::vector<PairOfTypes> types_;
-  std::vector<double> constants_;  // of i * width + j
-  std::vector<double> largest_;    // radius by type [length]
+  std::vector<double> constants_;           // of i * width + j
+  std::vector<double> largest_, smallest_;  // radius by type [length]
   Models models_;
   bool energies_ = false, strain_ = false;
   Layout layout_;

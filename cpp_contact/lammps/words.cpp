@@ -34,6 +34,13 @@ int place_of(const char* value) {
 }
 
 template <class Class>
+Class law_at(const double* numbers) {
+  Class law;
+  std::memcpy(static_cast<void*>(&law), numbers, sizeof law);
+  return law;
+}
+
+template <class Class>
 Law law_of() {
   static_assert(sizeof(ContactConstants<Class>) <= kernels::most_constants * sizeof(double));
   return {Class::name,
@@ -57,14 +64,13 @@ Law law_of() {
           },
           [](const double* numbers, double R_star) {
             if constexpr (adheres<Class>) {
-              Class law;
-              std::memcpy(static_cast<void*>(&law), numbers, sizeof law);
-              return adhesive::largest_gap(law.c, R_star);
+              return adhesive::largest_gap(law_at<Class>(numbers).c, R_star);
             }
             (void)numbers;
             (void)R_star;
             return 0.0;
-          }};
+          },
+          [](const double* numbers, double R_star) { return refused_adhesion(law_at<Class>(numbers), R_star); }};
 }
 
 [[noreturn]] void fail(LAMMPS* lmp, const std::string& text) { lmp->error->all(FLERR, text); }
@@ -302,8 +308,11 @@ void refuse_rigid_bodies(LAMMPS* lmp, const std::string& place) {
                     ", which contacts do not know; remove restitution");
 }
 
-double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const double* constants, double R_star) {
-  const double gap = law.largest_gap(constants + kernels::law_data, R_star), skin = lmp->neighbor->skin;
+double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const double* constants, double R_least,
+                   double R_most) {
+  const std::string refused = law.refused_adhesion(constants + kernels::law_data, R_least);
+  if (!refused.empty()) fail(lmp, place + ": " + refused);
+  const double gap = law.largest_gap(constants + kernels::law_data, R_most), skin = lmp->neighbor->skin;
   if (gap > skin)
     fail(lmp, place + ": law " + law.name + " pulls across gaps up to " + number(gap) + ", above the skin " +
                   number(skin) + "; increase the skin of command neighbor");

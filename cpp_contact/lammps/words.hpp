@@ -29,6 +29,8 @@ struct Law {
   void (*put)(double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
   double (*largest_gap)(const double* numbers, double R_star);
+  /// The sentence on a work of adhesion that such a law refuses, else empty.
+  std::string (*refused_adhesion)(const double* numbers, double R_star);
 };
 
 const std::vector<Law>& all_laws();
@@ -83,9 +85,10 @@ void check_settings(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 /// Ends the run if there are rigid bodies: a dashpot needs their masses.
 void refuse_rigid_bodies(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 
-/// Largest gap [length] across which a contact of these constants pulls; ends the run if it is above the skin.
+/// Largest gap [length] across which a contact of these constants pulls; ends the run if it is above the skin, or if
+/// the law refuses the work of adhesion at the smaller R* [length].
 double checked_gap(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const double* constants,
-                   double R_star);
+                   double R_least, double R_most);
 
 /// The kernels of the widest instruction set of this processor, or of EPDEM_SIMD; ends the run if that is none.
 const kernels::Kernels& kernels_of(LAMMPS_NS::LAMMPS* lmp);

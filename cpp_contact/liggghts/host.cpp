@@ -74,16 +74,19 @@ bool only_spheres(LAMMPS_NS::LAMMPS* lmp) {
   return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag && !lmp->atom->shapetype_flag;
 }
 
-double smallest_radius(LAMMPS_NS::LAMMPS* lmp) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < lmp->atom->nlocal; ++i) smallest = std::min(smallest, lmp->atom->radius[i]);
+std::vector<double> smallest_radii(LAMMPS_NS::LAMMPS* lmp) {
+  std::vector<double> least(lmp->atom->ntypes + 1, std::numeric_limits<double>::infinity());
+  for (int i = 0; i < lmp->atom->nlocal; ++i) {
+    double& smallest = least[lmp->atom->type[i]];
+    smallest = std::min(smallest, lmp->atom->radius[i]);
+  }
   for (int k = 0; k < lmp->modify->nfix; ++k)
     for (int type = 1; type <= lmp->atom->ntypes; ++type) {
       const double added = lmp->modify->fix[k]->min_rad(type);
-      if (added > 0.0) smallest = std::min(smallest, added);
+      if (added > 0.0) least[type] = std::min(least[type], added);
     }
-  double everywhere = smallest;
-  MPI_Allreduce(&smallest, &everywhere, 1, MPI_DOUBLE, MPI_MIN, lmp->world);
+  std::vector<double> everywhere = least;
+  MPI_Allreduce(least.data(), everywhere.data(), static_cast<int>(least.size()), MPI_DOUBLE, MPI_MIN, lmp->world);
   return everywhere;
 }
 

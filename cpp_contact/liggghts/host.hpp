@@ -13,6 +13,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "comm.h"
 #include "contact_models.h"
@@ -36,8 +37,9 @@ std::string model_names();
 /// Whether the particles of the simulation are spheres.
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp);
 
-/// The smallest radius of the spheres that are there or will be added; infinite if there are none. Collective.
-double smallest_radius(LAMMPS_NS::LAMMPS* lmp);
+/// The smallest radius of the spheres of each type that are there or will be added; infinite if there are none.
+/// Collective.
+std::vector<double> smallest_radii(LAMMPS_NS::LAMMPS* lmp);
 
 /// Makes LIGGGHTS look at bodies up to this factor of the sum of their radii.
 void register_contact_distance(LAMMPS_NS::LAMMPS* lmp, double factor);

@@ -2,11 +2,13 @@
 // A law as LIGGGHTS sees it: reads the contact, calls step(), writes force and stiffness. No physics in here.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
+#include "epdem/range.hpp"
 #include "kernels/block.hpp"
 #include "normal.hpp"
 
@@ -120,6 +122,17 @@ class LawModel : public NormalModel {
         for (int j = 1; j < width_; ++j)
           gap = std::max(gap, adhesive::largest_gap(table_[i * width_ + j].law.c, smallest_radius));
     return gap;
+  }
+
+  std::string refused_adhesion(const std::vector<double>& radii) const override {
+    for (int i = 1; i < width_; ++i)
+      for (int j = 1; j < width_; ++j) {
+        const double R_star = wall_ ? radii[i] : 1.0 / (1.0 / radii[i] + 1.0 / radii[j]);
+        if (!wall_ && std::isinf(radii[i] + radii[j])) continue;  // no two spheres meet
+        const std::string text = epdem::refused_adhesion(table_[i * width_ + j].law, R_star);
+        if (!text.empty()) return "atom types " + std::to_string(i) + " and " + std::to_string(j) + ": " + text;
+      }
+    return {};
   }
 
  private:

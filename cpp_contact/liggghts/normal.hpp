@@ -2,6 +2,7 @@
 // The normal model as LIGGGHTS sees it: settings, properties, history and the clock of all laws.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -193,6 +194,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   virtual void set_materials(const Materials& m) = 0;
   virtual std::vector<double> resistances(double cohesive) const = 0;
   virtual double largest_gap(double smallest_radius) const = 0;
+  /// The sentence on a work of adhesion that the law refuses for spheres of these smallest radii by type, else empty.
+  virtual std::string refused_adhesion(const std::vector<double>& radii) const = 0;
 
   /// Whether the history holds the step of the last evaluation that was kept.
   bool has_step() const { return !wall_ && (history_size_ > 0 || others_have_history_); }
@@ -228,8 +231,11 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   /// The largest gap, 1.6088 (Gamma^2 R*/E*^2)^(1/3), takes the largest share of the smallest sphere at a wall; half a
   /// hundredth more is for the step after the last one in contact.
   void reach() {
-    const double smallest = smallest_radius(lmp);
+    const std::vector<double> radii = smallest_radii(lmp);
+    const double smallest = *std::min_element(radii.begin(), radii.end());
     if (!std::isfinite(smallest)) return;  // no spheres, and nothing that will add any
+    const std::string refused = refused_adhesion(radii);
+    if (!refused.empty()) fail(refused);
     const double gap = largest_gap(smallest), factor = 1.005 + gap / smallest;
     if (!(factor > neighbor->contactDistanceFactor)) return;
     register_contact_distance(lmp, factor);

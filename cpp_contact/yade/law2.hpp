@@ -144,6 +144,12 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     epdem::ContactConstants<Law> pair;
     pair.bodies = bodies_of<Law>(phys, contact, epdem::hardening<Law>(values));
     pair.law = Law(phys.effectiveModulus, values);
+    const auto& geom = static_cast<const ScGeom&>(*contact.geom);
+    const double one = geom.radius1, two = geom.radius2;
+    const string refused = epdem::refused_adhesion(pair.law, phys.wall == 1 ? two
+                                                             : phys.wall    ? one
+                                                                            : epdem::reduced_finite(one, two));
+    if (!refused.empty()) iy::refuse(getClassName() + ": " + bodies + ": " + refused);
     pair.shear_modulus = phys.effectiveShearModulus;
     pair.dashpot = epdem::viscous_number(phys.en);
     pair.damping = epdem::damping_number(phys.es);

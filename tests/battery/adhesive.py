@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem.theory import adhesion
+from epdem.theory.cavity_adhesive import CavityAdhesive
 from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 
@@ -41,12 +42,15 @@ def ask(lines: list[str]) -> list[np.ndarray]:
 
 @dataclass(frozen=True)
 class Contact:
-    """A pair with adhesion [SI]; p_y None: it does not yield. m_star is that of a solid sphere of R_star."""
+    """A pair with adhesion [SI]; p_y None: it does not yield. m_star is that of a solid sphere of R_star.
+
+    cavity: law cavity_adhesive, and p_y is its yield stress."""
 
     p_y: float | None = None
     Gamma: float = GAMMA
     R_star: float = R_FINE
     E_star: float = E_STEEL
+    cavity: bool = False
 
     @property
     def m_star(self) -> float:
@@ -55,6 +59,8 @@ class Contact:
     @functools.cached_property
     def theory(self) -> JKR:
         numbers = {"E_star": self.E_star, "R_star": self.R_star, "Gamma": self.Gamma}
+        if self.cavity:
+            return CavityAdhesive(**numbers, Y=self.p_y)
         return JKR(**numbers) if self.p_y is None else ThorntonNing(**numbers, p_y=self.p_y)
 
     @functools.cached_property
@@ -63,7 +69,7 @@ class Contact:
 
     @property
     def words(self) -> str:
-        name = "jkr" if self.p_y is None else "thornton_ning"
+        name = "cavity_adhesive" if self.cavity else "jkr" if self.p_y is None else "thornton_ning"
         return f"{name} {self.E_star!r} {self.R_star!r} {self.Gamma!r} {self.p_y or 0.0!r}"
 
     def path(self, overlaps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

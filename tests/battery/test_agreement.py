@@ -28,8 +28,9 @@ def test_declarations_are_those_of_the_literature():
     """The memory is delta_max; cavity and meyer keep the peak beside it; an adhesive law keeps its opening curve."""
     tabor = {"thornton": ("yield_pressure", 2.8), "johnson": ("yield_pressure", 3.0), "cavity": ("yield_stress", 1.0)}
     tabor |= {"hertz": (None, 1.0), "jkr": (None, 1.0), "thornton_ning": ("yield_pressure", 2.8)}
-    tabor["meyer"] = tabor["thornton"]
+    tabor |= {"meyer": tabor["thornton"], "cavity_adhesive": tabor["cavity"]}
     memory = {"hertz": 0, "thornton": 1, "johnson": 1, "cavity": 4, "jkr": 2, "thornton_ning": 5, "meyer": 2}
+    memory["cavity_adhesive"] = 8
     for name, law in declarations().items():
         if name in tabor:
             assert (law.strength, law.default_ratio) == tabor[name] and law.memory == memory[name]
@@ -39,6 +40,7 @@ def test_declarations_are_those_of_the_literature():
     assert {n: law.without_adhesion for n, law in declarations().items() if law.adheres} == {
         "jkr": "hertz",
         "thornton_ning": "thornton",
+        "cavity_adhesive": "cavity",
     }
 
 
@@ -50,6 +52,7 @@ def test_a_law_flattens_where_its_theory_has_a_flatness(name):
 
 def test_ids_are_those_that_restart_files_keep():
     stored = {"hertz": 40, "thornton": 41, "johnson": 42, "cavity": 43, "jkr": 44, "thornton_ning": 45, "meyer": 46}
+    stored["cavity_adhesive"] = 47
     ids = {name: info.id for name, info in declarations().items()}
     assert stored.items() <= ids.items() and len(set(ids.values())) == len(ids)
 

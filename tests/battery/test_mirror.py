@@ -28,6 +28,7 @@ LAWS = {
     "meyer": {"hardening_exponent": 0.3},
     "jkr": {ADHESION: 50.0},
     "thornton_ning": {ADHESION: 50.0},
+    "cavity_adhesive": {ADHESION: 40.0},
 }
 SPEEDS = np.geomspace(0.01, 100.0, 13)
 TWICE = {"speed", "overlap_max", "residual_overlap", "work_in", "work_out", "plastic_work"}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Friction, rolling, cohesion, adhesion and energies of single contacts, each in every host."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -12,6 +13,7 @@ from triangles import fold, tiles
 
 import oblique
 from epdem.theory import adhesion, backbones, pair, partial_slip, restitution
+from epdem.theory.cavity_adhesive import CavityAdhesive
 from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 from marks import thorough
@@ -366,8 +368,11 @@ GAMMA, R_ADHESIVE = 400.0, 1e-3
 
 def sticky(law, plane=True):
     """(material, contact with the plane by theory)."""
-    material = STEEL | {"workOfAdhesion": GAMMA, "yieldPressure": 0.56e9}
-    numbers = {"E_star": E_STAR, "R_star": R_ADHESIVE, "Gamma": GAMMA}
+    Gamma = GAMMA / 200 if law == "cavity_adhesive" else GAMMA  # else it refuses the contact
+    material = STEEL | {"workOfAdhesion": Gamma, "yieldPressure": 0.56e9, "yieldStress": 0.2e9}
+    numbers = {"E_star": E_STAR, "R_star": R_ADHESIVE, "Gamma": Gamma}
+    if law == "cavity_adhesive":
+        return material, CavityAdhesive(**numbers, Y=0.2e9)
     return material, JKR(**numbers) if law == "jkr" else ThorntonNing(**numbers, p_y=0.56e9)
 
 
@@ -377,7 +382,8 @@ ACROSS_GAPS = on(HOSTS, ADHESIVE, ["plane"]) + on([LAMMPS], ["jkr"], ["region", 
 @pytest.mark.parametrize(("host", "law", "floor"), ACROSS_GAPS)
 @pytest.mark.parametrize("deepest", [0.0, 30.0])
 def test_pull_off_force_by_slow_separation(host, law, floor, deepest, tmp_path):
-    """3/2 pi Gamma R_p to 1e-6, of a sphere that is pressed down to some gaps' length and drawn away to its fold."""
+    """That of the opening curve (of JKR 3/2 pi Gamma R_p) to 1e-6, of a sphere pressed down to some gaps' length and
+    drawn away to its fold."""
     material, c = sticky(law)
     gap = float(-c.fold_overlap)
     down = (deepest + 1.0) * gap
@@ -392,8 +398,25 @@ def test_pull_off_force_by_slow_separation(host, law, floor, deepest, tmp_path):
     force = found[25:, 11]  # drawn away
     overlap = R_ADHESIVE - found[np.flatnonzero(found[:, 11])[-1], 2]  # the last one
     assert overlap == pytest.approx(float(dent + branch.fold_overlap), abs=1.5 * fine)
-    assert force.min() == pytest.approx(-1.5 * np.pi * GAMMA * float(branch.R_star), rel=1e-6)
+    assert force.min() == pytest.approx(-float(branch.pull_off_force), rel=1e-6)
     assert force[-1] == 0
+
+
+@every_host
+def test_an_attraction_with_which_growth_creates_energy_is_refused_with_its_limit(host, tmp_path):
+    """2 % above the limit of theory; 2 % below it the run ends. YADE judges the contact with the plane, the others two
+    like spheres, of half its R*."""
+    limit = float(sticky("cavity_adhesive")[1].largest_adhesion) * (1.0 if host.startswith("yade") else 0.5)
+    for share in (0.98, 1.02):
+        more = {"materials": [sticky("cavity_adhesive")[0] | {"workOfAdhesion": share * limit}]}
+        scene = on_plane("cavity_adhesive", np.zeros((1, 3)), R=R_ADHESIVE, dt=1e-8, steps=3, **more)
+        if share < 1:
+            frames(host, tmp_path / "below", scene)
+            continue
+        with pytest.raises(AssertionError) as refused:
+            frames(host, tmp_path / "above", scene)
+        found = re.search(r"R\* = 0\.00\d+ yields; law cavity_adhesive holds up to (\S+) there", str(refused.value))
+        assert float(found[1]) == pytest.approx(limit, rel=1e-6)
 
 
 @adhesive_law

@@ -20,6 +20,7 @@ LAWS = {
     "meyer": {"yieldPressure": 2.8 * Y, "hardeningExponent": 0.3},
     "jkr": {"workOfAdhesion": GAMMA},
     "thornton_ning": {"workOfAdhesion": GAMMA, "yieldPressure": 2.8 * Y},
+    "cavity_adhesive": {"workOfAdhesion": GAMMA / 2, "yieldStress": Y, "firstYieldRatio": 1.6, "plasticRatio": 2.8},
 }
 OF_PLANE = {"E": RIGID, "nu": 0.0, "yieldPressure": RIGID, "yieldStress": RIGID, "workOfAdhesion": 0.25}
 SPEEDS = np.array([0.01, 0.1, 0.5, 1.0])

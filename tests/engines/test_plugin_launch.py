@@ -17,7 +17,7 @@ from marks import thorough
 pytestmark = pytest.mark.liggghts
 
 BOX = ((-0.05, 0.05), (-0.05, 0.05), (-0.01, 0.1))
-NAMES = "ep/hertz ep/thornton ep/johnson ep/cavity ep/jkr ep/thornton_ning ep/meyer"
+NAMES = "ep/hertz ep/thornton ep/johnson ep/cavity ep/jkr ep/thornton_ning ep/meyer ep/cavity_adhesive"
 
 
 def library():

@@ -55,7 +55,7 @@ RANGES = {
     "yieldPressure": ({"0": "0", "-3e9": "-3e+09", "1e400": "inf"}, "> 0"),
     "hardeningExponent": ({"-0.1": "-0.1", "1": "1", "1e400": "inf"}, "[0, 1)"),
 }
-NAMES = "ep/hertz ep/thornton ep/johnson ep/cavity ep/jkr ep/thornton_ning ep/meyer"
+NAMES = "ep/hertz ep/thornton ep/johnson ep/cavity ep/jkr ep/thornton_ning ep/meyer ep/cavity_adhesive"
 NO_STRENGTH = without("yieldPressure", "yieldStress")
 # name: (model, edits, words)
 REFUSED = {
@@ -76,11 +76,9 @@ for law, ratio in (("thornton", 2.8), ("johnson", 3)):
             ["yieldPressure peratomtype", "yieldStress", f"is {ratio} times, or yieldPressureRatio"],
         ),
     }
-for law in ("hertz", "thornton"):
-    instead = {"hertz": "ep/jkr", "thornton": "ep/thornton_ning"}[law]
-    REFUSED[f"adhesion of {law}"] = f"ep/{law}", [GAMMA], [f"has no adhesion; take {instead}"]
-for law in ("johnson", "cavity"):
-    REFUSED[f"adhesion of {law}"] = f"ep/{law}", [SURFACE], ["no theory of adhesion exists for it"]
+for law, instead in {"hertz": "jkr", "thornton": "thornton_ning", "cavity": "cavity_adhesive"}.items():
+    REFUSED[f"adhesion of {law}"] = f"ep/{law}", [GAMMA], [f"has no adhesion; take ep/{instead}"]
+REFUSED["adhesion of johnson"] = "ep/johnson", [SURFACE], ["no theory of adhesion exists for it"]
 for law in ADHESIVE:
     edits = [GAMMA, with_pairs("cohesionEnergyDensity", 1e6), models("cohesion sjkr")]
     REFUSED[f"cohesion beside {law}"] = f"ep/{law}", edits, ["has its attraction already"]

@@ -24,6 +24,7 @@ LAWS = {  # parameters of both types
     "meyer": ("2e6 0.2", "1e6 0.2"),
     "jkr": ("5", "3"),
     "thornton_ning": ("5 2e6", "3 1e6"),
+    "cavity_adhesive": ("0.05 7e5", "0.03 4e5"),
 }
 MODELS = ["history 0.3", "none", "history 0.3 restitution 0.7", "no_history 0.3 restitution 0.7"]
 MODELS += ["history 0.3 rolling epsd2 0.1", "history 0.3 rolling cdt 0.1"]
@@ -37,7 +38,7 @@ def draw(seed):
     rng = random.Random(seed)
     names = tuple(rng.sample(sorted(FEATURES), rng.choice((1, 2, 2, 3))))
     law = rng.choice(list(LAWS))
-    models = MODELS + WITHOUT_ADHESION * (law not in ("jkr", "thornton_ning"))
+    models = MODELS + WITHOUT_ADHESION * (law not in ("jkr", "thornton_ning", "cavity_adhesive"))
     options = rng.choice(models)
     if law == "cavity" and "cohesion" not in options and rng.random() < 0.4:
         options += " compaction on"

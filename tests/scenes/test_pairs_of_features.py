@@ -48,7 +48,7 @@ def with_key(key):
     return {"walls": {name for name, walls in SLOTS["walls"].items() if any(key in wall for wall in walls)}}
 
 
-ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
+ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning", "cavity_adhesive"}}, {"output": {"rows alone"}}
 COMPACTION = {"cavity, compaction", "cavity, bonds"}
 COHESION = {"cohesion", "cohesion with friction"}
 NOT_LINEAR = {

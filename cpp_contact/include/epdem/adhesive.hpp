@@ -99,18 +99,35 @@ inline T on_touch(T jump, T beyond, T closing) noexcept {
 }
 
 /// The force of the step after the last one attached [N], in which the overlap is `beyond` the fold [m]: what the sum
-/// over the steps lacks. Near the fold F = F_f - bend sqrt(alpha - alpha_f). A sum of roots over steps of h differs
-/// from their integral by h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from the
-/// fold; zeta is sqrt(share) and a smooth rest, here to 2e-4.
+/// over the steps lacks. Near the fold F = F_fold - bend sqrt((alpha - alpha_f)/scale). A sum of roots over steps of h
+/// differs from their integral by h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from
+/// the fold; zeta is sqrt(share) and a smooth rest, here to 2e-4.
 template <class T>
-inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
+inline T on_parting(T F_fold, T bend, T scale, T beyond, T closing) noexcept {
   const T h = max(-closing, T{} + std::numeric_limits<double>::min()), share = max(1.0 - beyond / h, T{});
   const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
-  const T bend = 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;
-  const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(h / R) * (sqrt(share) + rest);
+  const T F = F_fold * (share - 0.5) + bend * sqrt(h / scale) * (sqrt(share) + rest);
   return select(beyond < 2.0 * h, F, T{});
 }
 
+/// Its bend in an elastic contact, with the scale R [N].
+template <class T>
+inline T bend_at_fold(T E_star, T y_f) noexcept {
+  return 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;
+}
+
+/// The same of an elastic curve of radius R.
+template <class T>
+inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
+  return on_parting(-5.0 / 6.0 * pull * R, bend_at_fold(E_star, y_f), R, beyond, closing);
+}
+
 }  // namespace adhesive
+
+/// Work of adhesion [J/m^2] of bodies of this R* up to which a law creates no energy.
+template <class Law>
+inline double largest_adhesion(const Law&, double) noexcept {
+  return std::numeric_limits<double>::infinity();
+}
 
 }  // namespace epdem

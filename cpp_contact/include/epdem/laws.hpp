@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cavity.hpp"
+#include "cavity_adhesive.hpp"
 #include "hertz.hpp"
 #include "jkr.hpp"
 #include "johnson.hpp"
@@ -19,7 +20,8 @@
   X(Cavity)           \
   X(Jkr)              \
   X(ThorntonNing)     \
-  X(Meyer)
+  X(Meyer)            \
+  X(CavityAdhesive)
 
 namespace epdem::detail {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "backbone.hpp"
+#include "adhesive.hpp"
 
 namespace epdem {
 
@@ -36,5 +36,19 @@ struct Range {
 
 /// Values of a law's parameter.
 inline Range range_of(const Parameter& p) noexcept { return {0.0, p.below, p.may_vanish}; }
+
+/// The sentence on a work of adhesion with which a law would create energy between bodies of this R*, else empty.
+template <class Law>
+std::string refused_adhesion(const Law& law, double R_star) {
+  if constexpr (adheres<Law>) {
+    const double given = law.pull / pi;
+    const double most = given > 0.0 && std::isfinite(R_star) ? largest_adhesion(law, R_star) : unlimited;
+    if (given > most)
+      return "the work of adhesion " + number(given) + " creates energy while a contact of R* = " + number(R_star) +
+             " yields; law " + Law::name + " holds up to " + number(most) +
+             " there, in proportion to R* and to the cube of the yield stress; lower it, or take law thornton_ning";
+  }
+  return {};
+}
 
 }  // namespace epdem

@@ -15,7 +15,7 @@ namespace epdem::liggghts {
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp) { return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag; }
 
 // No law there holds bodies across a gap.
-double smallest_radius(LAMMPS_NS::LAMMPS*) { return std::numeric_limits<double>::infinity(); }
+std::vector<double> smallest_radii(LAMMPS_NS::LAMMPS*) { return {std::numeric_limits<double>::infinity()}; }
 void register_contact_distance(LAMMPS_NS::LAMMPS*, double) {}
 
 namespace pfm {

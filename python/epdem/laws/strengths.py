@@ -280,7 +280,7 @@ def _alone(law: LawNumbers, strength: float, modulus: float) -> Backbone:
     """The law without adhesion at R* = 1, of two bodies of this strength [Pa] and E* = `modulus` [Pa]."""
     dry = find_law(law.name).without_adhesion or law.name  # attraction plays no part in the strength
     return (
-        replace(law, name=dry, absolute=strength)
+        replace(law, name=dry, ratios=default_numbers(dry).ratios | law.ratios, absolute=strength)
         .pair(strength, strength)
         .backbone(E_star=modulus, R_star=1.0, radius=2.0)
     )

@@ -18,7 +18,6 @@ STICKING_WORK = (2 * np.pi) ** (5 / 3) * _LOSS  # 7.0922: W_s in (Gamma^5 R*^4/E
 # (a/a_0)^1.5 > 1 at which an opening contact has the energy of its fold, so that it just comes loose
 _REACH = 2.0547413698273668
 TABOR_MIN = 3.0
-_T, _TW = gauss(8)  # exact for the works below
 
 
 def sticking_work(law: AdhesiveCurve) -> Numbers:
@@ -41,17 +40,16 @@ def yield_speed(law: AdhesiveCurve, *, m_star: Numbers) -> Numbers:
 def sticking_speed(law: AdhesiveCurve, *, m_star: Numbers) -> Numbers:
     """Impact speed V_s up to which the bodies stick [m/s]. m_star [kg] > 0.
 
-    Elastic: sqrt(2 W_s/m*). With yield: that at which the opening branch gives back just nothing, F(a_m) = k P_t(a_m)
-    with k = 0.3698276; F/P_t grows with a_m, so that there is one such speed. Bisection to round-off.
+    Elastic: sqrt(2 W_s/m*). With yield: that at which the opening branch gives back just nothing; what it gives back
+    grows with a_m, so that there is one such speed. Bisection to round-off.
     """
     m = number("m_star", m_star)
     reach = np.cbrt(_REACH * law.c * law.R_star) ** 2  # the elastic contact radius at V_s
     if not np.any(np.isfinite(law.yield_radius)):
         return np.sqrt(2 * sticking_work(law) / m)
-    share = _REACH / 1.5 - 1
 
     def detaches(a: Numbers) -> Numbers:
-        return law.force(a) > share * law.adhesive_load(a)
+        return _recovered(law, a) > 0
 
     low, high = np.maximum(reach, law.touch_radius), 2 * reach
     for _ in range(2000):
@@ -107,25 +105,24 @@ def _nodes() -> tuple[Numbers, Numbers, Numbers]:
     return t, rest, np.pi * np.cosh(s) * t * rest / 16
 
 
-def _time(m: Numbers, path: Path, above: Numbers) -> Numbers:
+def _time(m: Numbers, path: Path, above: Numbers, nodes: int) -> Numbers:
     """Time [s] on a path (d alpha/dt, F d alpha/dt) over t in [0, 1]; `above` [J] is the kinetic energy at t = 1.
 
-    At t it is that and the work between t and 1: polynomials of degree 15 at most, which Gauss integrates exactly.
+    At t it is that and the work between t and 1, by Gauss's rule of so many nodes.
     """
     slope, power = path
+    points = list(zip(*gauss(nodes), strict=True))
     t, rest, w = (np.reshape(x, (-1, *(1,) * np.ndim(above))) for x in _nodes())
-    left = above + rest * sum(wk * power(t + rest * tk) for tk, wk in zip(_T, _TW, strict=True))
+    left = above + rest * sum(wk * power(t + rest * tk) for tk, wk in points)
     return np.sum(w * np.abs(slope(t)) * np.sqrt(0.5 * m / np.maximum(left, np.finfo(float).tiny)), axis=0)
 
 
 def _loading_time(law: AdhesiveCurve, m: Numbers, top: Numbers) -> Numbers:
     """Time from touch to the largest contact radius `top` [s]."""
-    elastic = np.clip(law.yield_radius, law.touch_radius, np.maximum(top, law.touch_radius))
-    above, time = np.zeros(np.shape(top)), np.zeros(np.shape(top))
-    if np.any(np.isfinite(law.yield_radius)):
-        time = _time(m, law.plastic_path(elastic, np.maximum(top, elastic)), above)
-        above = law.work(top) - law.work(elastic)
-    return time + _time(m, law.elastic_path(law.touch_radius, elastic), above)
+    W, time = law.work(top), np.zeros(np.shape(top))
+    for path, end in law.loading_paths(top):
+        time = time + _time(m, path, np.where(end == top, 0.0, W - law.work(end)), law.path_nodes)
+    return time
 
 
 def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numbers:
@@ -133,7 +130,7 @@ def contact_time(law: AdhesiveCurve, *, m_star: Numbers, speed: Numbers) -> Numb
     m, v = number("m_star", m_star), number("speed", speed)
     top = law.radius_of_work(0.5 * m * v * v)
     branch, _ = law.branch(top)
-    back = _time(m, branch.elastic_path(branch.fold_radius, top), np.zeros(np.shape(top)))
+    back = _time(m, branch.elastic_path(branch.fold_radius, top), np.zeros(np.shape(top)), branch.path_nodes)
     return np.where(e_n(law, m_star=m, speed=v) > 0, _loading_time(law, m, top) + back, np.inf)
 
 

@@ -26,6 +26,7 @@ class AdhesiveCurve(Declared):
     """
 
     name: ClassVar[str] = "jkr"
+    path_nodes: ClassVar[int] = 8  # of Gauss's rule for works along a path
 
     def __init__(self, *, E_star: Numbers, R_star: Numbers, Gamma: Numbers) -> None:
         self.E_star, self.R_star = number("E_star", E_star), number("R_star", R_star)
@@ -124,9 +125,9 @@ class AdhesiveCurve(Declared):
 
         return slope, power
 
-    def plastic_path(self, low: Numbers, high: Numbers) -> Path:
-        """Functions as of `elastic_path` on the curve of a contact that yields, between the contact radii [m]."""
-        raise TypeError(f"{type(self).__name__} does not yield")
+    def loading_paths(self, top: Numbers) -> list[tuple[Path, Numbers]]:
+        """Paths from touch to the contact radius `top` [m] while the contact grows, each with the radius at its end."""
+        return [(self.elastic_path(self.touch_radius, top), top)]
 
     def radius_of_work(self, W: Numbers) -> Numbers:
         """Contact radius [m] at which the growing contact has taken W [J] >= 0: the inverse of `work`.

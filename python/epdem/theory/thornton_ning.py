@@ -52,8 +52,8 @@ class ThorntonNing(JKR):
         return np.pi * (self.p_y * y**4 - less)
 
     def plastic_path(self, low: Numbers, high: Numbers) -> Path:
-        """Functions (d alpha/dt [m], F d alpha/dt [J]) of t in [0, 1] on the plastic curve between the contact radii
-        low and high [m], >= a_y, the core pressure going straight; the second is a polynomial of degree 15."""
+        """As `elastic_path` on the plastic curve between contact radii >= a_y [m], the core pressure going straight;
+        the second function is a polynomial of degree 15."""
         left, start = np.sqrt(low), self._core(low)
         D = (np.sqrt(high) - left) / (start + self._core(high))
         rise = 4 * self._A * self._B * D  # core(high) - core(low) without cancellation
@@ -68,6 +68,12 @@ class ThorntonNing(JKR):
             return self._plastic_force(y(t), start + rise * t) * slope(t)
 
         return slope, power
+
+    def loading_paths(self, top: Numbers) -> list[tuple[Path, Numbers]]:
+        first = self.touch_radius
+        elastic = np.clip(self.yield_radius, first, np.maximum(top, first))
+        last = np.maximum(top, elastic)
+        return [(self.elastic_path(first, elastic), elastic), (self.plastic_path(elastic, last), last)]
 
     def work(self, a: Numbers) -> Numbers:
         """Work [J] put in from touch (a_0) to contact radius a [m] >= a_0 while it grows; exact to round-off."""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...errors import CaseError
 from ...impacts.experiment import RIGID_PLANE, Body, Experiment, pair_of
 from ...laws.strengths import default_numbers
 from ...theory import pair
@@ -41,8 +42,14 @@ class Extreme:
     exponent: float = EXPONENTS[-1]
 
     def suits(self, law: str) -> bool:
-        """Whether the case is one for this law."""
-        return (law in ADHESIVE) == (self.adhesion is not None)
+        """Whether the case is one for this law, which can refuse the work of adhesion."""
+        if (law in ADHESIVE) != (self.adhesion is not None):
+            return False
+        try:
+            self.experiment(law)
+        except CaseError:
+            return self.adhesion is None
+        return True
 
     def variants(self, law: str) -> list["Extreme"]:
         """The case, or for a law that hardens one for each exponent."""

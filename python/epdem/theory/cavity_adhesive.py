@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The three-phase law with adhesion: a rigid punch in tension is superposed on each of its contacts."""
+
+import numpy as np
+
+from .adhesive_curve import AdhesiveCurve, Numbers, Path
+from .cavity import Cavity
+from .flattened import Flattened
+from .jkr import JKR
+from .numerics import Array, bisect
+
+
+class CavityAdhesive(JKR):
+    """F = F_b - P_t(a), alpha = alpha_b - d(a) of `Cavity`'s force F_b and overlap alpha_b while the contact grows.
+
+    This project's own composition: below first yield it is JKR's contact; it opens as `Flattened` says. Gamma = 0 is
+    `cavity`. In a step of loading the dent loses d(W_b - U) - d (2 E* a d alpha_b - dF_b), U the elastic energy of the
+    peak: ValueError beyond `largest_adhesion`, where this would create energy. Y, c_Y, c_P as in Cavity.
+    """
+
+    name = "cavity_adhesive"
+    path_nodes = 32
+
+    def __init__(
+        self,
+        *,
+        E_star: Numbers,
+        R_star: Numbers,
+        Gamma: Numbers,
+        Y: Numbers,
+        c_Y: Numbers | None = None,
+        c_P: Numbers | None = None,
+    ) -> None:
+        super().__init__(E_star=E_star, R_star=R_star, Gamma=Gamma)
+        self.Y, self.c_Y, self.c_P = self.read_parameters(Y=Y, c_Y=c_Y, c_P=c_P)
+        self.backbone = b = Cavity(E_star=E_star, R_star=R_star, Y=self.Y, c_Y=self.c_Y, c_P=self.c_P)
+        self.yield_radius = b.a_Y
+        self.plastic_radius = np.sqrt(2 * self.R_star * b.plastic_overlap)
+        self.exponent = (1 + b.beta) / 2  # of a in alpha between yield and full plasticity
+        if np.any(self.largest_adhesion < self.Gamma):
+            at = np.argmin(np.broadcast_to(self.largest_adhesion / np.maximum(self.Gamma, 1e-300), np.shape(R_star)))
+            most, R = np.broadcast_arrays(self.largest_adhesion, self.R_star)
+            raise ValueError(
+                f"work_of_adhesion (Gamma) = {np.max(self.Gamma):.4g} J/m^2 creates energy while a contact of R* = "
+                f"{R.flat[at]:.3g} m yields; law {self.name} holds up to {most.flat[at]:.4g} J/m^2 there, in "
+                "proportion to R* and to the cube of the yield stress; lower it, or take law thornton_ning"
+            )
+
+    @property
+    def largest_adhesion(self) -> Numbers:
+        """Work of adhesion [J/m^2] up to which growth creates no energy: E* a_Y^3/(2 pi R*^2) times the least of
+        (D/K)^2 a_Y/a, D = d(W_b - U)/d alpha_b in pi a_Y^2 Y, K = 2 E* a - dF_b/d alpha_b in pi R* Y, where K > 0."""
+        c_Y, c_P = (np.ravel(np.asarray(x, float)) for x in np.broadcast_arrays(self.c_Y, self.c_P))
+        least = np.array([_least_ratio(y, p) for y, p in zip(c_Y, c_P, strict=True)])
+        shaped = np.reshape(least, np.broadcast_shapes(np.shape(self.c_Y), np.shape(self.c_P)))
+        return shaped * self.E_star * self.yield_radius**3 / (2 * np.pi * self.R_star**2)
+
+    # --- the growing contact, by contact radius
+
+    def backbone_overlap(self, a: Numbers) -> Numbers:
+        """alpha_b [m], the inverse of the radius of `Cavity`."""
+        a, R, b = np.asarray(a, float), self.R_star, self.backbone
+        middle = b.yield_overlap * np.maximum(a / self.yield_radius, 1.0) ** (1 / self.exponent)
+        return np.where(a <= self.yield_radius, a * a / R, np.where(a < self.plastic_radius, middle, a * a / (2 * R)))
+
+    def overlap(self, a: Numbers) -> Numbers:
+        return self.backbone_overlap(a) - self.c * np.sqrt(a)
+
+    def force(self, a: Numbers) -> Numbers:
+        return self.backbone.force(self.backbone_overlap(a)) - self.adhesive_load(a)
+
+    def slope(self, y: Numbers) -> Numbers:
+        a = y * y
+        between = (a > self.yield_radius) & (a < self.plastic_radius)
+        return np.where(between, 2 / self.exponent, 4.0) * self.backbone_overlap(a) / y - self.c
+
+    def work(self, a: Numbers) -> Numbers:
+        return self._potential(a) - self._potential(self.touch_radius)
+
+    def _potential(self, a: Numbers) -> Numbers:
+        """W_b - F_b d + pi Gamma a^2 - integral of d (2 E* a d alpha_b - dF_b): F is its slope by alpha."""
+        b = self.backbone
+        at, d = self.backbone_overlap(a), self.c * np.sqrt(a)
+        return b.work(at) - b.force(at) * d + np.pi * self.Gamma * a * a - self._mismatch(a)
+
+    def _mismatch(self, a: Numbers) -> Numbers:
+        """The integral of d (2 E* a d alpha_b - dF_b) from yield to `a` [J], in closed form."""
+        b, E, R, q = self.backbone, self.E_star, self.R_star, self.exponent
+        a_Y, a_P = self.yield_radius, self.plastic_radius
+        log = np.log(np.clip(a, a_Y, a_P) / a_Y) / q  # ln s
+        n, m = 2.5 * q, 1.5 * q + 1
+        grow = np.expm1(n * log)
+        A, B = 2 / 3 * b.c_Y, 2 / 3 * q  # p_m = Y (A + B ln s)
+        pressure = (2 * q * A + B) * grow / n + 2 * q * B * (log * (grow + 1) / n - grow / n**2)
+        middle = 2 * E * a_Y**1.5 * b.yield_overlap * np.expm1(m * log) / m - np.pi * a_Y**2.5 * b.Y * pressure
+        x = np.maximum(a, a_P)
+        above = 4 * E / (7 * R) * (x**3.5 - a_P**3.5) - 0.8 * np.pi * b.c_P * b.Y * (x**2.5 - a_P**2.5)
+        return self.c * (middle + above)
+
+    def radius(self, alpha: Numbers) -> Numbers:
+        """Contact radius a [m] of a contact that has grown up to the overlap alpha [m]; 0 below the fold of JKR."""
+        alpha = np.asarray(alpha, float)
+        elastic = super().radius(alpha)
+        # alpha_b >= a^2/(2 R*), so that no contact is wider than JKR's of the radius 2 R*
+        most = AdhesiveCurve(E_star=self.E_star, R_star=2 * self.R_star, Gamma=self.Gamma).radius(
+            np.maximum(alpha, 0.0)
+        )
+        low = np.minimum(self.yield_radius, most)
+        _, yielded = bisect(lambda a: self.overlap(a) < alpha, low, 1.001 * most + 0 * low, steps=100)
+        return np.where(elastic <= self.yield_radius, elastic, yielded)
+
+    @property
+    def touch_radius(self) -> Numbers:
+        """Contact radius a_0 [m] of a contact that has just formed at alpha = 0."""
+        return self.radius(0.0)
+
+    def branch(self, a_max: Numbers) -> tuple[Flattened, Numbers]:
+        top = np.maximum(np.asarray(a_max, float), self.yield_radius)
+        yields = top > self.yield_radius
+        at = self.backbone_overlap(top)
+        F, tau = self.backbone.force(at), self.backbone.flatness(at)
+        opened = Flattened(E_star=self.E_star, Gamma=self.Gamma, force=F, radius=top, flatness=tau)
+        dent = at - opened.way * (opened.A + opened.B)
+        return opened, np.where(yields, np.maximum(dent, 0.0), 0.0)
+
+    def loading_paths(self, top: Numbers) -> list[tuple[Path, Numbers]]:
+        first, top = self.touch_radius, np.asarray(top, float)
+        ends = [np.clip(x, first, np.maximum(top, first)) for x in (self.yield_radius, self.plastic_radius)]
+        last = np.maximum(top, ends[1])
+        elastic = AdhesiveCurve(E_star=self.E_star, R_star=self.R_star, Gamma=self.Gamma)
+        return [
+            (elastic.elastic_path(first, ends[0]), ends[0]),
+            (self._path(*ends), ends[1]),
+            (self._path(ends[1], last), last),
+        ]
+
+    def _path(self, low: Numbers, high: Numbers) -> Path:
+        """As `elastic_path`, on the growing curve within one phase, ln a going straight."""
+        log = np.log(high / np.maximum(low, 1e-300))
+
+        def slope(t: Numbers) -> Numbers:
+            y = np.sqrt(low * np.exp(log * t))
+            return self.slope(y) * 0.5 * y * log
+
+        def power(t: Numbers) -> Numbers:
+            return self.force(low * np.exp(log * t)) * slope(t)
+
+        return slope, power
+
+    def caveats(self, *, m_star: Numbers, speed: Array) -> list[str]:
+        return [*super().caveats(m_star=m_star, speed=speed), *self.backbone.caveats(m_star=m_star, speed=speed)]
+
+
+def _ratio(log: Array, c_Y: float, c_P: float) -> Array:
+    """(D/K)^2 a_Y/a of `largest_adhesion` at ln s > 0."""
+    ln_s_P = 3 * (c_P - 2 * c_Y / 3) - np.log(2)
+    q = (1 + np.log(2) / ln_s_P) / 2
+    full = log >= ln_s_P
+    s, tau = np.exp(log), np.minimum(log / ln_s_P, 1.0)
+    p = np.where(full, c_P, 2 / 3 * c_Y + 2 / 3 * q * np.minimum(log, ln_s_P))  # p_m/Y
+    a = np.where(full, np.sqrt(2 * s), s**q)  # in a_Y
+    rate = np.where(full, 0.5, q)  # d ln a/d ln s
+    F = a * a * p
+    dF = (2 * rate * F + np.where(full, 0.0, a * a * 2 / 3 * q)) / s
+    kappa = 0.3 * (1 - tau) ** 2 + 0.5625 * tau * (1 - tau) + 8 / (3 * np.pi**2) * tau**2
+    bend = np.where(full, 0.0, (-0.6 * (1 - tau) + 0.5625 * (1 - 2 * tau) + 16 / (3 * np.pi**2) * tau) / ln_s_P)
+    dU = 2 / c_Y * F / a * ((bend * F + 2 * kappa * s * dF - kappa * rate * F) / s)
+    K = c_Y * a - dF
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(K > 0, (np.maximum(F - dU, 0.0) / K) ** 2 / a, np.inf)
+
+
+def _least_ratio(c_Y: float, c_P: float) -> float:
+    """The least `_ratio` of all overlaps: in 2000 steps of each phase, then by halving the steps around it."""
+    ln_s_P = 3 * (c_P - 2 * c_Y / 3) - np.log(2)
+    least = np.inf
+    for low, high in ((1e-9, ln_s_P * (1 - 1e-12)), (ln_s_P, ln_s_P + 10)):
+        for _ in range(8):
+            log = np.linspace(low, high, 2001)
+            ratio = _ratio(log, c_Y, c_P)
+            k = int(np.argmin(ratio))
+            least = min(least, float(ratio[k]))
+            low, high = log[max(k - 2, 0)], log[min(k + 2, 2000)]
+    return least
