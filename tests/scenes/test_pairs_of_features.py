@@ -419,7 +419,7 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
     found = []
     for tool in ("lammps", "liggghts"):
         try:
-            more = {"ranks": 1 + (tool == "lammps" and "rolling" in chosen["contact"]), "fresh": True}
+            more = {"ranks": 1 + (between and tool == "lammps" and chosen["contact"] == "rolling"), "fresh": True}
             outcome = run(write_case(data, folder, "heap.toml"), tool, out=folder / f"heap_{tool}", **more)
         except CaseError as error:
             assert_names_who_takes_it(tool, folder / "heap.toml", error)
