@@ -186,7 +186,7 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    while running(out) and time.monotonic() < end:
+    while (running(out) or folder.status(out)["running"]) and time.monotonic() < end:  # its processes end after it
         time.sleep(0.01)
     assert folder.status(out)["waiting"] == 1
     run.run(run.plan(bed, {"scene.count": "60"}), out, jobs=1)
