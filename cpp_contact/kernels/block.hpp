@@ -9,7 +9,7 @@
 
 namespace epdem::kernels {
 
-constexpr int block_size = 128, most_lanes = 8;
+constexpr int block_size = 64, most_lanes = 8;
 
 /// A pair of materials as numbers: ContactConstants, the data of its law from `law_data` on, then its BodyShares.
 enum Constant { shear_modulus, damping, dashpot, friction, rolling_friction, cohesion_density, law_data };

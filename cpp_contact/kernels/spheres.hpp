@@ -29,7 +29,7 @@ struct TrianglePlanes {
   const double *point[4], *normal[4];
 };
 
-constexpr int pairs_at_once = 64;
+constexpr int pairs_at_once = 32;
 
 /// Pairs of neighbours, and the number of them that are tested.
 struct PairSearch {

@@ -170,10 +170,13 @@ struct Growing {
 /// What follows from the sums of a body in a step. A body without contacts forgets its largest pressure so far and the
 /// values of its BodyMemory.
 inline BodySums<double> sums_of_step(const double* sums, double pressure, double* of_body) noexcept {
+  const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
+  if (!touches) {
+    ::memset(of_body, 0, sizeof(BodyMemory));
+    return {};
+  }
   BodyMemory memory;
   ::memcpy(&memory, of_body, sizeof memory);
-  const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
-  if (!touches) memory = {};
   memory.full = max(memory.full, sums[4]);
   double parted = 0.0;
   if (memory.full > sums[5]) {
@@ -183,7 +186,7 @@ inline BodySums<double> sums_of_step(const double* sums, double pressure, double
   memory = {memory.full, {parted, memory.parted[0], memory.parted[1]}};
   ::memcpy(of_body, &memory, sizeof memory);
   const double* const p = memory.parted;
-  return {growth(sums[0], sums[1]), sums[2], touches ? max(pressure, sums[3]) : 0.0,
+  return {growth(sums[0], sums[1]), sums[2], max(pressure, sums[3]),
           min(1.0, max(0.0, 2.5 * p[0] - 2.0 * p[1] + 0.5 * p[2]))};
 }
 
@@ -364,19 +367,29 @@ inline double touch_factor(double largest) noexcept {
   return reach * reach;
 }
 
+/// What the energies of a step read of a GrowthState.
+template <class T>
+struct GrownEnd {
+  T added, grown, screening, area, retreat, recovered, force;
+};
+
+template <class T>
+EPDEM_INLINE GrownEnd<T> end_of(const GrowthState<T>& s) noexcept {
+  return {s.added, s.grown, s.screening, s.area, s.retreat, s.recovered, s.force};
+}
+
 /// A step of a contact that grows.
 template <class Law>
 struct GrownStep {
-  State<Law> before;                     // of the overlap with growth
-  Step<Law> step;                        // the same
-  Number<Law> overlap;                   // with growth and retreat [m]
-  Number<Law> reached;                   // largest overlap without growth, less the retreat, before the step [m]
-  Number<Law> delta_max;                 // the same after the step
-  Number<Law> soft;                      // 1 - G
-  Number<Law> whole;                     // force of the law alone at a peak that this step reaches [N]
-  Number<Law> grip;                      // pull at which the bond breaks [N], 0: none or broken
-  Number<Law> stretched, bond_loss;      // elastic energy of the bond; what it lost for good in this step [J]
-  GrowthState<Number<Law>> last, state;  // before and after the step
+  Step<Law> step;                     // of the overlap with growth
+  Number<Law> overlap;                // with growth and retreat [m]
+  Number<Law> reached;                // largest overlap without growth, less the retreat, before the step [m]
+  Number<Law> reached_grown;          // the same with growth
+  Number<Law> delta_max;              // largest overlap without growth after the step [m]
+  Number<Law> whole;                  // force of the law alone at a peak that this step reaches [N]
+  Number<Law> grip;                   // pull at which the bond breaks [N], 0: none or broken
+  Number<Law> stretched, bond_loss;   // elastic energy of the bond; what it lost for good in this step [J]
+  GrownEnd<Number<Law>> last, state;  // before and after the step
 };
 
 /// As `step`, for a contact whose law's history is `before`, with the largest overlap without growth. Writes the state
@@ -387,11 +400,12 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   const T zero{};
   GrownStep<Law> s;
   s.whole = s.grip = s.stretched = s.bond_loss = zero;
-  const GrowthState<T>& last = s.last;
+  GrowthState<T> last;
 #ifndef __CUDACC__
 #pragma GCC unroll 64
 #endif
-  for (int k = 0; k < growth_values; ++k) put_number(s.last, k, number_at<T>(c.state, k));
+  for (int k = 0; k < growth_values; ++k) put_number(last, k, number_at<T>(c.state, k));
+  s.last = end_of(last);
   const auto known = last.screening > 0.0;
   s.reached = select(known, before.delta_max, min(overlap, zero));
   const Added<T> v = added_overlap(c, repeats);
@@ -432,22 +446,23 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   s.delta_max = select((level < s.reached) & (s.reached < no_overlap), s.reached, level);
   s.overlap = level + v.extrapolated;
   const T m = detail::yielded_share(law, R_star, s.delta_max + v.extrapolated);
-  s.soft = (loss.i + loss.j) * m;
+  const T soft = (loss.i + loss.j) * m;
 
-  s.before = before;
-  s.before.delta_max = s.reached + v.extrapolated;
+  s.reached_grown = s.reached + v.extrapolated;
+  State<Law> grown_before = before;
+  grown_before.delta_max = s.reached_grown;
   const auto kept = [&](auto falls) __attribute__((always_inline)) {
     return falls & known & (v.extrapolated == last.added) & (v.grown == last.grown) & (pressure == last.pressure);
   };
   const auto load = [&](T b) __attribute__((always_inline)) {
     return detail::grown_point(law, R_star, b, v.grown, pressure, s.whole);
   };
-  s.step = step_of_peak(law, R_star, s.before, s.overlap, kept, load);
+  s.step = step_of_peak(law, R_star, grown_before, s.overlap, kept, load);
 
   const Point<T>& peak = s.step.after.point;
   const auto dented = m > 0.0, parts = !(overlap + v.extrapolated > 0.0);
   const Recovery<T> back = recovery(law.E_star, peak);
-  const T residual = max(zero, s.delta_max) - (1.0 - s.soft) * back.overlap;
+  const T residual = max(zero, s.delta_max) - (1.0 - soft) * back.overlap;
   const T area = select(dented, m * (peak.radius * peak.radius), zero);
   const T recovered = select(dented, m * back.overlap, zero);
   c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area, overlap,
@@ -455,7 +470,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   if (!repeats) {
     const T own =
         detail::grown(c, growth(c.dents.i.cover, c.dents.i.volume), growth(c.dents.j.cover, c.dents.j.volume));
-    const T unstored = select(dented, s.soft * back.work, zero);
+    const T unstored = select(dented, soft * back.work, zero);
     const T before_force = select(c.state.area > 0.0, before.point.force, peak.force);
     const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
     c.state = {v.now,
@@ -496,7 +511,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
     s.delta_max = select(parts, zero, s.delta_max);
     detail::zero_where<T>(parts, c.state);
   }
-  s.state = c.state;
+  s.state = end_of(c.state);
   return s;
 }
 
@@ -544,7 +559,7 @@ template <class Law, class T = Number<Law>>
     held = select(yields, U, held);
   }
   // what the bodies take of the energy at the stationary Q: 3/7 N Q^(7/3) is the sum of 3/7 Q c d_e F
-  const auto share = [&](const GrowthState<T>& at) {
+  const auto share = [&](const GrownEnd<T>& at) {
     return select(at.area > 0.0, 3.0 / 7.0 * at.force * ((1.0 - at.screening) * at.recovered - at.retreat), zero);
   };
   const T taken = share(s.state), taken0 = share(s.last);

@@ -142,7 +142,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     const GrownStep<Law> grown = grown_step(law, pair.bodies, R_star, before, overlap, growth, repeats);
     now.step = grown.step;
     now.overlap = grown.overlap;
-    reached = grown.before.delta_max;
+    reached = grown.reached_grown;
     delta_max = grown.delta_max;
     grip = grown.grip;
     observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {

@@ -138,9 +138,13 @@ void WallLoop::add_couple(int i, LAMMPS_NS::FixMeshSurface* mesh, double overlap
 
 bool Wall::velocity_in_middle(const SurfacesIntersectData& s, const double* at_surface, LAMMPS_NS::TriMesh& mesh,
                               int triangle, double* v) {
-  const auto velocities = mesh.prop().getElementProperty<LAMMPS_NS::MultiVectorContainer<double, 3, 3>>("v");
-  if (!velocities) return false;
-  double** const rate = velocities->begin()[triangle];
+  if (moving_ != &mesh) {
+    const auto velocities = mesh.prop().getElementProperty<LAMMPS_NS::MultiVectorContainer<double, 3, 3>>("v");
+    moving_ = &mesh;
+    rates_ = velocities ? velocities->begin() : nullptr;
+  }
+  if (!rates_) return false;
+  double** const rate = rates_[triangle];
   const double* const corner = Triangles::corners(mesh) + 9L * triangle;
   const auto edge = [&](int k) { return vector_of(corner + 3 * k) - vector_of(corner); };
   const auto edge_rate = [&](int k) { return vector_of(rate[k]) - vector_of(rate[0]); };

@@ -95,6 +95,7 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
   }
 
   void open(LAMMPS_NS::FixWallGran& wall) override {
+    moving_ = nullptr;
     if (rolls()) loop_.find_couples(wall);
     const char* why = missing();
     if (!why) why = loop_.obstacle(wall, plan_);
@@ -123,12 +124,14 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public BatchedWall, privat
 
  private:
   /// LIGGGHTS takes the velocity of a mesh at its surface, but the arm of a sphere ends in the middle of the overlap.
-  static bool velocity_in_middle(const SurfacesIntersectData& s, const double* at_surface, LAMMPS_NS::TriMesh& mesh,
-                                 int triangle, double* v);
+  bool velocity_in_middle(const SurfacesIntersectData& s, const double* at_surface, LAMMPS_NS::TriMesh& mesh,
+                          int triangle, double* v);
 
   StoredContacts stored_;
   const LAMMPS_NS::FixWallGran& parent_;
   WallLoop loop_;
+  const LAMMPS_NS::TriMesh* moving_ = nullptr;  // the mesh of the last contact in this step; a search by name gives
+  double*** rates_ = nullptr;                   // the velocities of its corners, or none
 };
 
 }  // namespace epdem::liggghts::loop
