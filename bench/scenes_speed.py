@@ -70,7 +70,9 @@ def files(case: Path, model: str) -> dict[str, str]:
             d.contact,
             model="hertz",
             properties=properties,
-            settings=tuple(s for s in settings if not re.match("computePlasticWork|computeContactStrain", s)),
+            settings=tuple(
+                s for s in settings if not re.match("computePlasticWork|computeElasticEnergy|computeContactStrain", s)
+            ),
         ),
         row_words=tuple(word for word in d.row_words if not word.startswith("c_ratio")),
         contact_columns=scene_deck.contact_columns((), 0),

@@ -45,6 +45,7 @@ struct Pass : ContactSettings {
   bool several;                 // pairs of materials in this block; else the pair of its first contact
   bool freeze;                  // whether a group of atoms is frozen
   bool work;                    // energies are requested
+  bool holds;                   // with them what contacts hold; else stored_energy has no sense
   bool strain;                  // the largest w a/R* and w overlap/R* are requested
 };
 

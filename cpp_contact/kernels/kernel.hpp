@@ -100,7 +100,7 @@ struct Recorder {
     if (rarely(pass.strain)) largest(b, k, n, now.radius, overlap, larger_share(pair.bodies) / R_star);
     if constexpr (tallies) {
       if (!rarely(pass.work)) return;
-      const NormalEnergies<Lanes> e = energies();
+      const NormalEnergies<Lanes> e = energies(pass.holds);
       store(b.stored_energy.a + k, e.stored);
       store(b.plastic_work_step.a + k, e.plastic_work_step);
       store(b.contact_radius.a + k, now.radius);

@@ -79,11 +79,12 @@ void FixHistory::open_energies(int atoms) {
     array_atom[i][elastic_energy] = array_atom[i][loaded_contacts] = array_atom[i][friction_energy] = 0.0;
 }
 
-void FixHistory::add_wall_energies(const kernels::Block& b, int n, const Models& models) {
+void FixHistory::add_wall_energies(const kernels::Block& b, int n, const Models& models, bool holds) {
   for (int k = 0; k < n; ++k) {
     double* const row = array_atom[b.i[k]];
     const double work = b.plastic_work_step.a[k];
     if (work > 0.0 || models.compaction) row[plastic_work] += work;
+    if (!holds) continue;
     row[elastic_energy] += b.stored_energy.a[k];
     row[loaded_contacts] += b.contact_radius.a[k] > 0.0;
   }

@@ -61,11 +61,14 @@ class FixHistory : public LAMMPS_NS::Fix {
     body_memory,
     columns = body_memory + memory_values
   };
+  template <int halves>
   class HalfEnergies;
-  /// What scatter_pairs adds beside the forces: half of plastic work and elastic energy to each atom of this rank.
-  HalfEnergies half_energies(const kernels::Block& b, const Models& models);
-  /// Adds plastic work and elastic energy of n contacts with a wall to their atoms.
-  void add_wall_energies(const kernels::Block& b, int n, const Models& models);
+  /// What scatter_pairs adds beside the forces: half of plastic work and elastic energy, and a loaded contact, to each
+  /// atom of this rank; halves: the first of these columns.
+  template <int halves>
+  HalfEnergies<halves> half_energies(const kernels::Block& b, const Models& models);
+  /// Adds plastic work and elastic energy, if it is known, of n contacts with a wall to their atoms.
+  void add_wall_energies(const kernels::Block& b, int n, const Models& models, bool holds);
   /// Plastic and frictional work of the contacts of an atom since the start.
   double work_of(int i) const { return array_atom[i][plastic_work] + array_atom[i][friction_work]; }
   /// Adds the energies of friction and the work of adhesion of n contacts: half of a pair to each atom of this rank.
@@ -147,6 +150,7 @@ class FixHistory : public LAMMPS_NS::Fix {
 };
 
 /// The sums of atom i stay in registers while its pairs follow each other.
+template <int halves>
 class FixHistory::HalfEnergies {
  public:
   HalfEnergies(const kernels::Block& b, const Models& models, double* rows)
@@ -160,7 +164,7 @@ class FixHistory::HalfEnergies {
   void add(int k, long j, bool owned) {
     double* const row = owned ? rows_ + columns * j : ghost_;
     const double work = work_[k] > 0.0 || gives_back_ ? 0.5 * work_[k] : 0.0;  // growth can give work back
-    const double of_contact[halves] = {work, 0.5 * energy_[k], double(loaded_[k] > 0.0)};
+    const double of_contact[] = {work, 0.5 * energy_[k], double(loaded_[k] > 0.0)};
     for (int c = 0; c < halves; ++c) {
       sum_[c] += of_contact[c];
       row[c] += of_contact[c];
@@ -169,14 +173,14 @@ class FixHistory::HalfEnergies {
   void end(long i) { std::copy_n(sum_, halves, rows_ + columns * i); }
 
  private:
-  static constexpr int halves = 3;  // the first columns
   const double *const work_, *const energy_, *const loaded_;
   const bool gives_back_;
   double* const rows_;
   double sum_[halves] = {}, ghost_[halves] = {};
 };
 
-inline FixHistory::HalfEnergies FixHistory::half_energies(const kernels::Block& b, const Models& models) {
+template <int halves>
+inline FixHistory::HalfEnergies<halves> FixHistory::half_energies(const kernels::Block& b, const Models& models) {
   return {b, models, array_atom[0]};
 }
 

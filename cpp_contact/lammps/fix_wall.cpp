@@ -158,6 +158,7 @@ void FixWall::post_force(int) {
   pass_.dt = counts ? update->dt : no_time;
   pass_.repeats = !counts;
   pass_.work = counts && pair_->energies();
+  pass_.holds = pair_->holds();
   pass_.strain = pair_->strain();
   pass_.sums = words_.models.compaction ? pair_->history()->bodies() : nullptr;
   pass_.v = readable_rows(atom->v, atom->nlocal, atom->nmax, copies_[0]);
@@ -260,7 +261,7 @@ void FixWall::finish(int n) {
     }
   }
   if (pass_.work) {
-    pair_->history()->add_wall_energies(b, n, words_.models);
+    pair_->history()->add_wall_energies(b, n, words_.models, pass_.holds);
     pair_->history()->add_works(b, n, words_.models, true);
     if (heat_) heat_->add_wall(b, n, id);
   }

@@ -67,12 +67,13 @@ PairEp::~PairEp() {
 }
 
 void PairEp::settings(int count, char** word) {
-  energies_ = strain_ = false;
+  energies_ = holds_ = strain_ = false;
   for (int k = 0; k < count; ++k) {
     const std::string setting = word[k];
-    if (setting != "energies" && setting != "strain")
-      error->all(FLERR, "pair_style ep: {} is no setting of the style; there are energies and strain", setting);
+    if (setting != "energies" && setting != "works" && setting != "strain")
+      error->all(FLERR, "pair_style ep: {} is no setting of the style; there are energies, works and strain", setting);
     (setting == "strain" ? strain_ : energies_) = true;
+    holds_ |= setting == "energies";
   }
   create_history();  // computes of the deck may name the fix
 }
@@ -228,6 +229,7 @@ void PairEp::compute(int eflag, int vflag) {
   history_->resume();
   const bool counts = !update->setupflag;
   pass_.work = energies_ && counts;
+  pass_.holds = holds_;
   if (pass_.work) history_->open_energies(atom->nlocal);
   if (heat_) heat_->open();
   if (models_.compaction) {
@@ -293,7 +295,10 @@ void PairEp::finish(int n) {
     kernels::scatter_pairs<true>(b, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
   };
   if (pass_.work) {
-    scatter(history_->half_energies(b, models_));
+    if (holds_)
+      scatter(history_->half_energies<3>(b, models_));
+    else
+      scatter(history_->half_energies<1>(b, models_));
     history_->add_works(b, n, models_, false);
     if (heat_) heat_->add_pairs(b, n);
   } else {
@@ -344,7 +349,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   std::vector<double> history(std::max(1, layout_.values), 0.0);
   if (known) std::copy_n(known, layout_.values, history.data());
 
-  pass_.work = true;
+  pass_.work = pass_.holds = true;
   pass_.strain = false;
   kernels::Block& b = *block_;
   b.i[0] = i;
@@ -371,7 +376,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
 
 void PairEp::write_restart(FILE* file) {
   if (comm->me != 0) return;
-  const int settings = energies_ + 2 * strain_;
+  const int settings = energies_ + 2 * strain_ + 4 * holds_;
   fwrite(&settings, sizeof settings, 1, file);
   for (int i = 1; i < width_; ++i)
     for (int j = i; j < width_; ++j) {
@@ -392,6 +397,7 @@ void PairEp::read_restart(FILE* file) {
   read(&settings, sizeof settings);
   energies_ = (settings & 1) != 0;
   strain_ = (settings & 2) != 0;
+  holds_ = (settings & 4) != 0;
   for (int i = 1; i < width_; ++i)
     for (int j = i; j < width_; ++j) {
       int size;

@@ -38,6 +38,7 @@ class PairEp : public LAMMPS_NS::Pair {
   const Words& words_of(int type, const std::string& place) const;
   FixHistory* history() const { return history_; }
   bool energies() const { return energies_; }
+  bool holds() const { return holds_; }
   bool strain() const { return strain_; }
   double largest_radius(int type) const { return largest_[type]; }
   double smallest_radius(int type) const { return smallest_[type]; }
@@ -67,7 +68,7 @@ class PairEp : public LAMMPS_NS::Pair {
   std::vector<double> constants_;           // of i * width + j
   std::vector<double> largest_, smallest_;  // radius by type [length]
   Models models_;
-  bool energies_ = false, strain_ = false;
+  bool energies_ = false, holds_ = false, strain_ = false;  // holds_: with the elastic energy
   Layout layout_;
   std::string fix_id_;
   FixHistory* history_ = nullptr;

@@ -17,7 +17,7 @@ namespace epdem::liggghts {
 /// adhesiveWork [J] sums up what the forces lost in their jumps at touch and parting. With partial slip frictionWork
 /// [J] sums up what friction took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy
 /// belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them,
-/// so each adds to its own body only.
+/// so each adds to its own body only. Without computeElasticEnergy there are no elasticEnergy and loadedContacts.
 class EnergyTally {
  public:
   static constexpr const char *work_name = "plasticWork", *friction_name = "frictionWork";
@@ -27,11 +27,12 @@ class EnergyTally {
     int i, j, nlocal;
   };
 
-  /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp, bool adds_friction, bool adheres) {
+  /// For the pair style, whose settings come first: creates the properties; walls follow. holds: those of this step.
+  void create(LAMMPS_NS::LAMMPS* lmp, bool adds_friction, bool adheres, bool holds) {
     for (const char* name : {work_name, energy_name, loaded_name, friction_name, springs_name, adhesive_name}) {
       if (!adds_friction && (name == friction_name || name == springs_name)) continue;
       if (!adheres && name == adhesive_name) continue;
+      if (!holds && (name == energy_name || name == loaded_name)) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
@@ -47,7 +48,7 @@ class EnergyTally {
     springs_ = find(lmp, springs_name, model.c_str());
     adhesive_ = find(lmp, adhesive_name, model.c_str());
     loaded_ = find(lmp, loaded_name, model.c_str());
-    if (work_ && energy_ && loaded_ && (friction_ || !adds_friction) && (adhesive_ || !adheres)) return;
+    if (work_ && (friction_ || !adds_friction) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
                              (adds_friction ? ", with the same tangential model"
@@ -58,8 +59,8 @@ class EnergyTally {
 
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
   void open(int nlocal) {
-    std::fill_n(energy_->vector_atom, nlocal, 0.0);
-    std::fill_n(loaded_->vector_atom, nlocal, 0.0);
+    for (auto* of_step : {energy_, loaded_})
+      if (of_step) std::fill_n(of_step->vector_atom, nlocal, 0.0);
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
@@ -85,15 +86,15 @@ class EnergyTally {
   /// Adds the energies of one contact to one body [J].
   void credit(int body, double grown, double stored, bool bears) {
     if (grown > 0.0 || gives_back_) work_->vector_atom[body] += grown;  // few contacts grow
-    energy_->vector_atom[body] += stored;
-    loaded_->vector_atom[body] += bears;
+    if (energy_) energy_->vector_atom[body] += stored;
+    if (loaded_) loaded_->vector_atom[body] += bears;
   }
 
   /// One number per body, for a loop that adds by itself as `add` does.
   bool gives_back() const { return gives_back_; }
   double* work() { return work_->vector_atom; }
-  double* energy() { return energy_->vector_atom; }
-  double* loaded() { return loaded_->vector_atom; }
+  double* energy() { return energy_ ? energy_->vector_atom : nullptr; }
+  double* loaded() { return loaded_ ? loaded_->vector_atom : nullptr; }
   double* adhesive() { return adhesive_ ? adhesive_->vector_atom : nullptr; }
 
  private:

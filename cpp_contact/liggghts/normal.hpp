@@ -35,6 +35,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
 
   void registerSettings(::Settings& settings) {
     settings.registerOnOff("computePlasticWork", plastic_work_, false);
+    settings.registerOnOff("computeElasticEnergy", elastic_energy_, true);
     settings.registerOnOff("computeContactStrain", contact_strain_, false);
     settings.registerOnOff("compaction", compaction_, false);
     settings.registerOnOff("tangential_damping", tangential_damping_, true);
@@ -60,7 +61,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (dissipated_energy_)
       refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
-    if (plastic_work_ && !wall_) tally_.create(lmp, adds_friction_, law_.adheres);
+    if (plastic_work_ && !wall_) tally_.create(lmp, adds_friction_, law_.adheres, elastic_energy_);
     if (contact_strain_ && !wall_) LargestStrain::create(lmp);
     if (!compaction_) return;
     if (!law_.compacts) refuse("compaction", "only ep/cavity has it");
@@ -268,7 +269,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::PairGran* pair_ = nullptr;
   LAMMPS_NS::FixWallGran* wall_gran_ = nullptr;
   bigint clock_ = 0;  // step of the last pass
-  bool adds_friction_ = false;
+  bool adds_friction_ = false, elastic_energy_ = true;
   bool viscous_ = false, tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
   bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;
 };

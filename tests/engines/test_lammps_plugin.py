@@ -129,6 +129,17 @@ compute sums all reduce sum f_EP_HISTORY0[1] f_EP_HISTORY0[2] f_EP_HISTORY0[3] f
     assert np.abs(total / total[0] - 1).max() < 1e-5
 
 
+def test_works_alone_change_no_bit(tmp_path):
+    """pair_style ep works: motion and plastic work are those of energies, columns 2 and 3 stay 0."""
+    words = "cavity 1e8 0.3 4e5 tangential history 0.3 compaction on"
+    dump = DUMP.replace("omegaz", "omegaz f_EP_HISTORY0[1] f_EP_HISTORY0[2] f_EP_HISTORY0[3]")
+    more = f"fix floor all wall/ep zplane 0 0.02 {words}"
+    decks = {w: bed((f"1 1 {words}",), style=f"ep {w}", boundary="p p f", more=more) for w in ("energies", "works")}
+    whole, works = (run(deck + "run 300\n" + dump, tmp_path / name)[1] for name, deck in decks.items())
+    assert np.all(whole[:, -3:].max(axis=0) > 0) and not works[:, -2:].any()
+    assert np.array_equal(whole[:, :-2], works[:, :-2])
+
+
 def test_a_frozen_group_is_a_heavy_body(tmp_path):
     """fix freeze: the sphere bounces from a frozen one as the theory of a fixed target says, for restitution 0.5."""
     deck = """

@@ -58,6 +58,19 @@ def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
         assert not np.array_equal(without[-1][:, :4], theirs[-1][:, :4])
 
 
+def test_without_the_elastic_energy_no_other_bit_changes(tmp_path):
+    """computeElasticEnergy off: the same motion and plastic work in both loops; two properties are not there."""
+    scene = WITH_COMPACTION[2]
+    text = deck(scene).replace("compaction on", "compaction on computeElasticEnergy off")
+    less = text.replace(" f_elasticEnergy f_loadedContacts", "")
+    whole, _ = outcome(tmp_path / "whole", scene)
+    for loop in ("", "generic"):
+        works, _ = outcome(tmp_path / f"works{loop}", scene, loop=loop, text=less)
+        assert np.array_equal(np.delete(whole, [-8, -7], axis=-1), works)  # before the forces of two walls
+    with pytest.raises(AssertionError, match="Could not find dump custom fix ID"):
+        outcome(tmp_path / "named", scene, text=text)
+
+
 @pytest.mark.parametrize("law", ["hertz", "cavity", "thornton_ning"])
 def test_a_restart_goes_on_with_the_other_loop(tmp_path, law):
     """In the middle of contacts, three materials: equal bits in all four combinations."""

@@ -516,10 +516,11 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
 }
 
 /// Energies of a step that grows, of second order in the time step; closing: closing speed at the half step times the
-/// time step [m]. The plastic work of one contact may be negative: what grows a contact is paid by the dents of others.
+/// time step [m]; holds: whether the elastic energy is requested. The plastic work of one contact may be negative: what
+/// grows a contact is paid by the dents of others.
 template <class Law, class T = Number<Law>>
 [[gnu::noinline]] NormalEnergies<T> grown_energies(const Law& law, T R_star, const Point<T>& peak_before,
-                                                   const GrownStep<Law>& s, T overlap, T closing) noexcept {
+                                                   const GrownStep<Law>& s, T overlap, T closing, bool holds) noexcept {
   const auto known = s.last.screening > 0.0, was_dented = s.last.area > 0.0, dented = s.state.area > 0.0;
   const T one = constant<T>(1.0), zero{};
   const T v = s.state.added, v0 = select(known, s.last.added, v), b = s.delta_max + v, b0 = s.reached + v0;
@@ -538,7 +539,7 @@ template <class Law, class T = Number<Law>>
   const auto yields = dented & (overlap - s.state.retreat >= s.reached);
   T lost{}, held{};
   if (any(!yields)) {
-    held = stored(dented, safe, b, s.overlap);
+    if (holds) held = stored(dented, safe, b, s.overlap);
     lost = stored(was_dented, safe0, b0, middle + less0) - stored(dented, safe, b, middle + less);
   }
   if (any(yields)) {

@@ -107,7 +107,8 @@ struct NormalContact {
 /// A step of the law with its dashpots; closing: closing speed at the half step times the time step [m];
 /// approach_speed [m/s]; m_star() is evaluated where there is a dashpot. repeats: `before` is the history after a step
 /// that is evaluated once more, with closing = 0. growth: a Growing with compaction. The observer gets the step, its
-/// overlap and a function that returns the energies of the step.
+/// overlap and a function that returns the energies of the step; it may be told that nobody asks for the elastic
+/// energy.
 template <class Law, class Mass, class Observer = NoObserver, class Growth = NoGrowth>
 inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Number<Law> R_star, Number<Law> radius_i,
                                          const State<Law>& before, Number<Law> overlap, Number<Law> closing,
@@ -129,7 +130,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   if constexpr (std::is_same_v<std::decay_t<Growth>, NoGrowth>) {
     (void)growth;
     now.step = step(law, R_star, before, overlap, closing);
-    observer.normal(pair, R_star, now.step, overlap, [&]() __attribute__((always_inline)) {
+    observer.normal(pair, R_star, now.step, overlap, [&](bool = true) __attribute__((always_inline)) {
       if constexpr (adheres<Law>) {
         const State<Law> first = before;  // copies: what is passed by its address stays in memory
         const Step<Law> last = now.step;
@@ -145,7 +146,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     reached = grown.reached_grown;
     delta_max = grown.delta_max;
     grip = grown.grip;
-    observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
+    observer.normal(pair, R_star, now.step, now.overlap, [&](bool holds = true) __attribute__((always_inline)) {
       union Copy {  // number by number: what is passed by its address stays in memory
         GrownStep<Law> step;
         Copy() noexcept {}
@@ -155,7 +156,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
 #endif
       for (std::size_t k = 0; k < sizeof copy / sizeof(T); ++k) put_number(copy.step, k, number_at<T>(grown, k));
       const auto peak = before.point;
-      return grown_energies(law, R_star, peak, copy.step, overlap, closing);
+      return grown_energies(law, R_star, peak, copy.step, overlap, closing, holds);
     });
     growth.keep();
   }

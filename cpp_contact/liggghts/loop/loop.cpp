@@ -64,6 +64,7 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt) {
   static_cast<ContactSettings&>(pass) = plan.settings;
   pass.dt = dt;
   pass.work = plan.tally != nullptr;
+  pass.holds = plan.tally && plan.tally->energy();
   pass.strain = plan.strain != nullptr;
   return pass;
 }
@@ -232,21 +233,26 @@ struct Beside {
 
   EPDEM_INLINE void begin(long body) {
     i = body;
-    if constexpr (tallies) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
+    if constexpr (tallies) {
+      work_i = work[i];
+      if (energy && loaded) energy_i = energy[i], loaded_i = loaded[i];
+    }
     if constexpr (grown) std::copy_n(dents + dent_sums * i, dent_sums, dents_i);
   }
 
   EPDEM_INLINE void add(int k, long j, bool owned) {
     if constexpr (tallies) {
-      const double lost = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0,
-                   stored = 0.5 * b.stored_energy.a[k];
-      const bool bears = b.contact_radius.a[k] > 0.0;
+      const double lost = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0;
       work_i += lost;
-      energy_i += stored;
-      loaded_i += bears;
       *(owned ? work + j : others) += lost;
-      *(owned ? energy + j : others + 1) += stored;
-      *(owned ? loaded + j : others + 2) += bears;
+      if (energy && loaded) {
+        const double stored = 0.5 * b.stored_energy.a[k];
+        const bool bears = b.contact_radius.a[k] > 0.0;
+        energy_i += stored;
+        loaded_i += bears;
+        *(owned ? energy + j : others + 1) += stored;
+        *(owned ? loaded + j : others + 2) += bears;
+      }
       if constexpr (adheres) {
         parted[i] += 0.5 * b.adhesion_loss.a[k];
         *(owned ? parted + j : others + 3) += 0.5 * b.adhesion_loss.a[k];
@@ -262,7 +268,10 @@ struct Beside {
   }
 
   EPDEM_INLINE void end(long) {
-    if constexpr (tallies) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
+    if constexpr (tallies) {
+      work[i] = work_i;
+      if (energy && loaded) energy[i] = energy_i, loaded[i] = loaded_i;
+    }
     if constexpr (grown) std::copy_n(dents_i, dent_sums, dents + dent_sums * i);
   }
 };

@@ -153,7 +153,7 @@ class Pairs : public PairStyles::Granular<Contact> {
     PairStyles::Granular<Contact>::settings(n, words);
     for (int k = 0; k + 1 < n; ++k) {
       if (std::strcmp(words[k + 1], "on")) continue;
-      if (!std::strcmp(words[k], "computePlasticWork")) EnergyTally().create(lmp_, false, false);
+      if (!std::strcmp(words[k], "computePlasticWork")) EnergyTally().create(lmp_, false, false, true);
       if (!std::strcmp(words[k], "computeContactStrain")) LargestStrain::create(lmp_);
     }
   }

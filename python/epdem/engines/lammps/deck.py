@@ -156,7 +156,8 @@ def deck(p: ScenePlan) -> SceneDeck:
     return SceneDeck(
         plan=p,
         skin=p.case.numerics.skin or default_skin(p),
-        settings=" energies" * (p.output.energy or p.contacts > 0 or p.heat is not None) + " strain",
+        settings=(" works" if m.compaction else " energies") * (p.output.energy or p.contacts > 0 or p.heat is not None)
+        + " strain",
         materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
         pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),

@@ -196,7 +196,8 @@ def deck(p: ScenePlan) -> SceneDeck:
     _refuse_meshes(p)
     _refuse_skin(p)
     _refuse_restarts(p)
-    m, recorded = p.model, ["computePlasticWork on"] * bool(p.works or p.heat) + ["computeContactStrain on"]
+    m, works = p.model, ["computePlasticWork on"] + ["computeElasticEnergy off"] * p.model.compaction
+    recorded = works * bool(p.works or p.heat) + ["computeContactStrain on"]
     commands = phases(p)
     return SceneDeck(
         plan=p,
