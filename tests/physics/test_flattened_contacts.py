@@ -155,8 +155,8 @@ def test_an_impact_gives_back_the_quadrature_of_its_opening(Gamma, V):
 
 
 @pytest.mark.parametrize("Gamma", [0.02, 0.2])
-def test_times_are_those_of_runge_and_kutta(Gamma):
-    """The approach by 200,000 steps of the force at the radius of the overlap."""
+def test_times_are_those_of_velocity_verlet(Gamma):
+    """20,000 steps of the force at the radius of the overlap."""
     law, V = law_of(Gamma), 1.0
     x = adhesion.impact(law, m_star=M, speed=V)
     a = np.geomspace(float(law.touch_radius), float(x.radius_max), 4001)
