@@ -155,7 +155,7 @@ def test_a_restart_file_names_models_by_their_ids_and_a_former_one_is_refused(tm
     head = spheres((-0.01, 0, 0), (0.0099, 0, 0), pair=f"{THORNTON} tangential history 0.3")
     run(head + "fix motion all nve/sphere\nrun 10\nwrite_restart here\n", tmp_path)
     file = tmp_path / "here"
-    stored, numbers = file.read_bytes(), struct.pack("4d", -4.0, 41.0, 2.0, 0.0)
+    stored, numbers = file.read_bytes(), struct.pack("4d", -5.0, 41.0, 2.0, 0.0)
     assert stored.count(numbers) == 1
     file.write_bytes(stored.replace(numbers, struct.pack("4d", 1.0, 2.0, 0.0, 7.0)))
     code, out = lammps("atom_modify map array\ncomm_modify vel yes\nread_restart here\nrun 0\n", tmp_path)

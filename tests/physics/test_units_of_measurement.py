@@ -163,6 +163,7 @@ ROWS = [
     ),
     Row(printed.wu_restitution, {"speed": (50.0, SPEED), "v_y0": (0.1, SPEED)}, ONE),
     Row(timestep.sticking_packing, {"kappa": (0.8, ONE), "contacts": (12.0, ONE)}, ONE),
+    Row(timestep.retreating_packing, {"screening_": (0.4, ONE)}, ONE),
     Row(timestep.pressed_radius, {"relative_density": (0.9, ONE)}, ONE),
     Row(timestep.screening, {"radius": (0.4, ONE), "poisson_ratio_": NU, "contacts": (8.0, ONE)}, ONE),
     Row(timestep.stability_limit, {"E_star": E_STAR, "m_star": M_STAR, "radius": A}, S),

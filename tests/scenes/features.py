@@ -94,7 +94,7 @@ LAWS = {
     "meyer": {"name": "meyer", "hardening_exponent": 0.3},
     "jkr": {"name": "jkr", "work_of_adhesion": "0.02 J/m^2"},
     "thornton_ning": {"name": "thornton_ning", "work_of_adhesion": "0.02 J/m^2"},
-    "cavity_adhesive": {"name": "cavity_adhesive", "work_of_adhesion": "0.005 J/m^2"},
+    "cavity_adhesive": {"name": "cavity_adhesive", "work_of_adhesion": "5e-4 J/m^2"},
 }
 PAIRS = [{"between": ["glass", "wall"], "friction": 0.7}, {"between": ["glass", "steel"], "friction": 0.1}]
 STRENGTHS = {

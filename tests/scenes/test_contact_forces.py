@@ -61,7 +61,7 @@ PRESSED["scene"]["phase"] = [
     timed(
         "press", "0.1 s", until={"wall": "lid", "force": f"{PRESS} N", "after": "0 s"}, move=[linear("lid", 0, 0, -0.1)]
     ),
-    timed("rest", "0.1 s"),
+    timed("rest", "0.3 s"),
 ]
 BY_WAY = copy.deepcopy(PRESSED)  # in YADE, as far as the lid goes in LAMMPS
 BY_WAY["scene"]["phase"][1]["until"] = {"wall": "lid", "travel": "9.3 mm"}
