@@ -106,7 +106,7 @@ def test_removing_any_line_of_a_deck_breaks_the_run_or_changes_what_it_puts_out(
     # no sphere meets a shutter or the screw in this short run; a phase at rest says again that walls have no power
     idle = r"(variable (history|force)\d_|unfix )wall_shutter\b|dump_modify wall_contacts |variable power equal 0.0$"
     # walls have neither bonds nor friction there, and no sphere follows the punch when it leaves
-    leaves = r"variable (history20|force[12])_wall_floor |variable power equal -\(f_wall_punch|unfix move_punch$"
+    leaves = r"variable (history26|force[12])_wall_floor |variable power equal -\(f_wall_punch|unfix move_punch$"
     idle += f"|{leaves}" if path.stem == "tablet_strength" else ""
     useless = [r.line for r in found if r.effect == "nothing" and not re.match(idle, r.line)]
     assert not useless, f"{path.name}: lines that do nothing: {useless}"

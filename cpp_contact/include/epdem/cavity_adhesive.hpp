@@ -349,7 +349,8 @@ inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
                                   const typename CavityAdhesive<T>::State& before,
                                   const typename CavityAdhesive<T>::State& after) noexcept {
   using namespace adhesive;
-  const auto stood = before.root > 0.0, stands = after.root > 0.0, dented = detail::has_dent(law, before);
+  const auto stood = before.root > 0.0, stands = after.root > 0.0;
+  const auto dented = detail::has_dent(law, before);
   T adhesive{}, plastic{};
   const auto forms = stands & (before.root <= 0.0), ends = stood & (after.root <= 0.0);
   if (any(forms)) {
