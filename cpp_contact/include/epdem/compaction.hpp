@@ -173,7 +173,7 @@ inline BodySums<double> sums_of_step(const double* sums, double pressure, double
   const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
   if (!touches) {
     ::memset(of_body, 0, sizeof(BodyMemory));
-    return {};
+    return BodySums<double>{};
   }
   BodyMemory memory;
   ::memcpy(&memory, of_body, sizeof memory);
