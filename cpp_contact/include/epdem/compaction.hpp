@@ -398,7 +398,7 @@ template <bool wall, class Law, class T = Number<Law>>
 EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodies, T R_star, const State<Law>& before,
                                        T overlap, Growing<wall, T>& c, bool repeats) noexcept {
   const T zero{};
-  GrownStep<Law> s;
+  GrownStep<Law> s{};
   s.whole = s.grip = s.stretched = s.bond_loss = zero;
   GrowthState<T> last;
 #ifndef __CUDACC__
