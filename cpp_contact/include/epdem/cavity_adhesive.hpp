@@ -355,7 +355,7 @@ inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
   const auto forms = stands & (before.root <= 0.0), ends = stood & (after.root <= 0.0);
   if (any(forms)) {
     T E = energy_at_touch(law.E_star, law.c, R_star);
-    const auto at_once = !dented & (after.dent > 0.0) & (law.yield_overlap(R_star) <= 0.0);
+    const auto at_once = (after.dent > 0.0) & (law.yield_overlap(R_star) <= 0.0) & !dented;
     if (any(at_once))
       E = select(at_once, law.energy_at_peak(law.body.load(R_star, law.backbone_overlap(R_star, T{}))), E);
     if (any(forms & dented)) {
