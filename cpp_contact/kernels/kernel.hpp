@@ -120,13 +120,6 @@ struct Recorder {
 /// Whether a pair parted since its last evaluation.
 EPDEM_INLINE Mask parted(double now, Lanes last_step) { return now - last_step > 1.0; }
 
-/// The values of a history one by one: a copy as a whole would go through memory.
-template <int count, class From, class To>
-EPDEM_INLINE void copy(const From* from, To* to) {
-#pragma GCC unroll 64  // by itself GCC unrolls up to 16
-  for (int k = 0; k < count; ++k) put_number(*to, k, number_at<Lanes>(*from, k));
-}
-
 /// History of rolling friction behind `first` values of other models, read and written only where a model needs it.
 /// Rows of four are faster than three numbers. with_step: no other model of a pair has a history, and the value before
 /// is the step of the last evaluation; else the kernel writes the value before later.
@@ -237,8 +230,8 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
           if (has_history(Rollings{}, pass.rolling)) history.rolling.clear(is_new);
         }
       }
-      copy<law_values>(value, &history.law);
-      copy<friction_values>(value + sliding, &history.friction);
+      copy_numbers<Lanes, law_values>(value[0], history.law);
+      copy_numbers<Lanes, friction_values>(value[sliding], history.friction);
     }
     if constexpr (grows) {
       history.growth.block = &b;
@@ -250,7 +243,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
       if constexpr (!wall) history.growth.curvature_j = 1.0 / c.radius_j;
       history.growth.i = sums_of(pass.sums, b.i + k);
       if constexpr (!wall) history.growth.j = sums_of(pass.sums, b.j + k);
-      copy<grown_values>(value + values, &history.growth.state);
+      copy_numbers<Lanes, grown_values>(value[values], history.growth.state);
     }
 
     const auto mass = [&]() __attribute__((always_inline)) {
@@ -260,8 +253,8 @@ template <class Law, class Friction, bool wall, bool grows = false, bool tallies
     loads = contact<Friction, wall>(pair, settings, c, history, mass, Recorder<tallies>{b, k, n, pass});
 
     if constexpr (values > 0) {
-      copy<law_values>(&history.law, value);
-      copy<friction_values>(&history.friction, value + sliding);
+      copy_numbers<Lanes, law_values>(history.law, value[0]);
+      copy_numbers<Lanes, friction_values>(history.friction, value[sliding]);
       if constexpr (!wall) value[last_step] = constant<Lanes>(pass.now);
       write<values>(b.history + k, value);
     }

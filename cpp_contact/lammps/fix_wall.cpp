@@ -284,13 +284,13 @@ void FixWall::note(int n) {
     row[0] = atom->tag[b.i[k]];
     row[1] = b.j[k];
     row[2] = overlap;
-    row[3] = most < 0 ? overlap : std::max(overlap - (growth < 0 ? 0.0 : retreat_of(history + growth)), history[most]);
+    row[15] = growth < 0 ? 0.0 : retreat_of(history + growth);
+    row[3] = most < 0 ? overlap : std::max(overlap - row[15], history[most]);
     row[4] = root < 0 || history[root] > 0.0;
     row[5] = growth < 0 ? 0.0 : added_overlap_of(history + growth);
     row[6] = growth < 0 ? 0.0 : screening_of(history + growth);
     row[13] = growth < 0 ? 0.0 : grown_overlap_of(history + growth);
     row[14] = growth < 0 ? 0.0 : body_pressure_of(history + growth);
-    row[15] = growth < 0 ? 0.0 : retreat_of(history + growth);
     for (int axis = 0; axis < 3; ++axis) {
       row[7 + axis] = b.force[axis].a[k];
       row[10 + axis] = distance > 0.0 ? b.from_wall[axis].a[k] / distance : 0.0;

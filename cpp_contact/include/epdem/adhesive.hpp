@@ -122,7 +122,28 @@ inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept 
   return on_parting(-5.0 / 6.0 * pull * R, bend_at_fold(E_star, y_f), R, beyond, closing);
 }
 
+/// Work lost by yield in a step that grows [J].
+template <class Law, class T>
+inline T plastic_work_of_step(const Law& law, T R_star, const typename Law::State& before,
+                              const typename Law::State& after) noexcept {
+  const auto grows = after.delta_max > before.delta_max;
+  if (!any(grows)) return T{};
+  return select(grows, plastic_work(law, R_star, after) - plastic_work(law, R_star, before), T{});
+}
+
 }  // namespace adhesive
+
+/// The radius R [m] of the elastic curve with the pull-off force of a contact, 3/2 pi Gamma R.
+template <class Law, class T>
+inline T opening_radius(const Law&, T R_star, const typename Law::State& now) noexcept {
+  return select(now.dent > 0.0, now.R_open, R_star);
+}
+
+/// The overlap [m] at which a contact that broke forms again.
+template <class Law>
+inline typename Law::number reforming_overlap(const Law&, const typename Law::State& now) noexcept {
+  return now.dent;
+}
 
 /// Work of adhesion [J/m^2] of bodies of this R* up to which a law creates no energy.
 template <class Law>

@@ -314,18 +314,6 @@ inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
            select(keeps, now_dent, zero), select(keeps, R_open, zero), jump, select(keeps, point, Point<T>{})}};
 }
 
-/// The radius R [m] of an elastic contact with the same pull-off force: 3/2 pi Gamma R.
-template <class T>
-inline T opening_radius(const CavityAdhesive<T>&, T R_star, const typename CavityAdhesive<T>::State& now) noexcept {
-  return select(now.dent > 0.0, now.R_open, R_star);
-}
-
-/// The overlap [m] at which a contact that broke forms again.
-template <class T>
-inline T reforming_overlap(const CavityAdhesive<T>&, const typename CavityAdhesive<T>::State& now) noexcept {
-  return now.dent;
-}
-
 /// Work lost by yield [J] of a contact with this memory; what touch took of a contact that yields at once is
 /// adhesion's.
 template <class T>
@@ -351,7 +339,7 @@ inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
   using namespace adhesive;
   const auto stood = before.root > 0.0, stands = after.root > 0.0;
   const auto dented = detail::has_dent(law, before);
-  T adhesive{}, plastic{};
+  T adhesive{};
   const auto forms = stands & (before.root <= 0.0), ends = stood & (after.root <= 0.0);
   if (any(forms)) {
     T E = energy_at_touch(law.E_star, law.c, R_star);
@@ -372,10 +360,7 @@ inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
     }
     adhesive = select(ends, E, adhesive);
   }
-  const auto grows = after.delta_max > before.delta_max;
-  if (any(grows))
-    plastic = select(grows, plastic_work(law, R_star, after) - plastic_work(law, R_star, before), plastic);
-  return {plastic, adhesive};
+  return {plastic_work_of_step(law, R_star, before, after), adhesive};
 }
 
 /// Elastic and surface energy [J] of a contact at overlap `delta` <= delta_max, 0 for bodies apart.

@@ -311,16 +311,6 @@ EPDEM_INLINE Depths<T> screened(const Growing<wall, T>& c, const BodyShares<T>& 
           side(c.j.area, c.curvature_j, 1.0 - s_i, bodies.bulk_j, x.j)};
 }
 
-/// All numbers 0 where the mask says so.
-template <class T, class M, class Numbers>
-EPDEM_INLINE void zero_where(M mask, Numbers& numbers) noexcept {
-#ifndef __CUDACC__
-#pragma GCC unroll 64
-#endif
-  for (std::size_t k = 0; k < sizeof(Numbers) / sizeof(T); ++k)
-    put_number(numbers, k, select(mask, T{}, number_at<T>(numbers, k)));
-}
-
 /// A bond after a step; zeros where it is broken.
 template <class T>
 struct Held {
@@ -399,12 +389,8 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
                                        T overlap, Growing<wall, T>& c, bool repeats) noexcept {
   const T zero{};
   GrownStep<Law> s{};
-  s.whole = s.grip = s.stretched = s.bond_loss = zero;
   GrowthState<T> last;
-#ifndef __CUDACC__
-#pragma GCC unroll 64
-#endif
-  for (int k = 0; k < growth_values; ++k) put_number(last, k, number_at<T>(c.state, k));
+  copy_numbers<T, growth_values>(c.state, last);
   s.last = end_of(last);
   const auto known = last.screening > 0.0;
   s.reached = select(known, before.delta_max, min(overlap, zero));
@@ -504,12 +490,10 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
       if (!repeats) c.state.broken = select(whole & !(bond.grip > 0.0), constant<T>(1.0), c.state.broken);
     }
   // a new contact that is looked at before a step has no growth of its own yet that it could take from its sums
-  if (const auto undented = repeats ? parts | !known : parts; any(undented)) {
-    detail::zero_where<T>(undented, c.dents);
-  }
+  if (const auto undented = repeats ? parts | !known : parts; any(undented)) keep_where<T>(!undented, c.dents);
   if (any(parts)) {
     s.delta_max = select(parts, zero, s.delta_max);
-    detail::zero_where<T>(parts, c.state);
+    keep_where<T>(!parts, c.state);
   }
   s.state = end_of(c.state);
   return s;

@@ -147,14 +147,11 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     delta_max = grown.delta_max;
     grip = grown.grip;
     observer.normal(pair, R_star, now.step, now.overlap, [&](bool holds = true) __attribute__((always_inline)) {
-      union Copy {  // number by number: what is passed by its address stays in memory
+      union Copy {  // what is passed by its address stays in memory
         GrownStep<Law> step;
         Copy() noexcept {}
       } copy;
-#ifndef __CUDACC__
-#pragma GCC unroll 64
-#endif
-      for (std::size_t k = 0; k < sizeof copy / sizeof(T); ++k) put_number(copy.step, k, number_at<T>(grown, k));
+      copy_numbers<T, sizeof copy / sizeof(T)>(grown, copy.step);
       const auto peak = before.point;
       return grown_energies(law, R_star, peak, copy.step, overlap, closing, holds);
     });
@@ -236,14 +233,6 @@ EPDEM_INLINE auto attached(const State<Law>& before) noexcept {
     return true;
 }
 
-/// All values of a history where the mask says so, else 0.
-template <class T, class M, class History>
-EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
-  if constexpr (!std::is_empty_v<History>)
-    for (std::size_t k = 0; k < sizeof(History) / sizeof(T); ++k)
-      put_number(history, k, select(mask, number_at<T>(history, k), T{}));
-}
-
 }  // namespace detail
 
 /// One contact. `history` holds the values before the step, then the values after the step.
@@ -255,7 +244,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   using T = Number<Law>;
   // bodies that touch without being attached begin anew in the models beside the law
   [[maybe_unused]] const auto attached = detail::attached<Law>(history.law);
-  if constexpr (adheres<Law>) detail::keep_where<T>(attached, history.friction);
+  if constexpr (adheres<Law>) keep_where<T>(attached, history.friction);
   if constexpr (!std::is_same_v<Growth, NoGrowth>)
     history.growth.bond = settings.cohesion == bond_place ? pair.cohesion_density : T{};
   NormalContact<Law> now = normal_contact(pair, c.R_star, c.radius_i, history.law, c.overlap,
@@ -295,7 +284,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
         if (place == settings.rolling) {
           Vec<T> kept{};
           if constexpr (Model::has_history) kept = history.rolling;
-          if constexpr (Model::has_history && adheres<Law>) detail::keep_where<T>(attached, kept);
+          if constexpr (Model::has_history && adheres<Law>) keep_where<T>(attached, kept);
           const Vec<T> torque = Model::template torque<wall>(rolling, kept);
           if constexpr (Model::has_history) history.rolling = kept;
           loads.torque_i = loads.torque_i - torque;

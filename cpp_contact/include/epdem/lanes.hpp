@@ -13,8 +13,12 @@
 // A device takes one contact per thread: its compilers have no vectors of GCC, and the functions of <cmath> are global.
 #if defined __CUDACC__ || defined __CUDA__ || defined __HIP__ || defined __HIPCC_RTC__
 #define EPDEM_DEVICE
-#elif defined __SSE2__
+#define EPDEM_UNROLL
+#else
+#define EPDEM_UNROLL _Pragma("GCC unroll 64")  // by itself GCC unrolls loops of up to 16 turns
+#ifdef __SSE2__
 #include <immintrin.h>
+#endif
 #endif
 
 #define EPDEM_INLINE [[gnu::always_inline]] inline
@@ -238,6 +242,21 @@ EPDEM_INLINE T number_at(const Numbers& all, std::size_t k) noexcept {
 template <class Numbers, class T>
 EPDEM_INLINE void put_number(Numbers& all, std::size_t k, const T& x) noexcept {
   ::memcpy(reinterpret_cast<char*>(&all) + k * sizeof x, &x, sizeof x);
+}
+
+/// The first `count` numbers one by one: a copy as a whole would go through memory.
+template <class T, std::size_t count, class From, class To>
+EPDEM_INLINE void copy_numbers(const From& from, To& to) noexcept {
+  EPDEM_UNROLL for (std::size_t k = 0; k < count; ++k) put_number(to, k, number_at<T>(from, k));
+}
+
+/// All numbers where the mask says so, else 0.
+template <class T, class M, class Numbers>
+EPDEM_INLINE void keep_where(M mask, Numbers& all) noexcept {
+  if constexpr (!std::is_empty_v<Numbers>) {
+    EPDEM_UNROLL for (std::size_t k = 0; k < sizeof(Numbers) / sizeof(T); ++k)
+        put_number(all, k, select(mask, number_at<T>(all, k), T{}));
+  }
 }
 
 template <class T>

@@ -186,18 +186,6 @@ inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const ty
            select(keeps, dent, zero), select(keeps, R, zero), jump}};
 }
 
-/// The radius R [m] of the curve on which a contact opens: its pull-off force is 3/2 pi Gamma R.
-template <class T>
-inline T opening_radius(const ThorntonNing<T>&, T R_star, const typename ThorntonNing<T>::State& now) noexcept {
-  return select(now.dent > 0.0, now.R_open, R_star);
-}
-
-/// The overlap [m] at which a contact that broke forms again.
-template <class T>
-inline T reforming_overlap(const ThorntonNing<T>&, const typename ThorntonNing<T>::State& now) noexcept {
-  return now.dent;
-}
-
 /// Work lost by yield [J] of a contact with this memory: what loading took from a_y (or from touch, if the attraction
 /// makes it yield at once), less what is stored at the largest overlap.
 template <class T>
@@ -233,11 +221,7 @@ inline adhesive::Losses<T> losses(const ThorntonNing<T>& law, T R_star, const ty
     adhesive = select(forms, -energy(E, c, first, y), adhesive);
   }
   if (any(ends)) adhesive = select(ends, energy_at_fold(E, c, R), adhesive);
-  const auto grows = after.delta_max > before.delta_max;
-  T plastic{};
-  if (any(grows))
-    plastic = select(grows, plastic_work(law, R_star, after) - plastic_work(law, R_star, before), plastic);
-  return {plastic, adhesive};
+  return {plastic_work_of_step(law, R_star, before, after), adhesive};
 }
 
 /// Elastic and surface energy [J] of a contact at overlap `delta` <= delta_max, 0 for bodies apart.

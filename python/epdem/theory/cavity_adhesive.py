@@ -151,9 +151,8 @@ class CavityAdhesive(JKR):
         return [*super().caveats(m_star=m_star, speed=speed), *self.backbone.caveats(m_star=m_star, speed=speed)]
 
 
-def _ratio(log: Array, c_Y: float, c_P: float) -> Array:
+def _ratio(log: Array, c_Y: float, c_P: float, ln_s_P: float) -> Array:
     """(D/K)^2 a_Y/a of `largest_adhesion` at ln s > 0."""
-    ln_s_P = 3 * (c_P - 2 * c_Y / 3) - np.log(2)
     q = (1 + np.log(2) / ln_s_P) / 2
     full = log >= ln_s_P
     s, tau = np.exp(log), np.minimum(log / ln_s_P, 1.0)
@@ -177,7 +176,7 @@ def _least_ratio(c_Y: float, c_P: float) -> float:
     for low, high in ((1e-9, ln_s_P * (1 - 1e-12)), (ln_s_P, ln_s_P + 10)):
         for _ in range(8):
             log = np.linspace(low, high, 2001)
-            ratio = _ratio(log, c_Y, c_P)
+            ratio = _ratio(log, c_Y, c_P, ln_s_P)
             k = int(np.argmin(ratio))
             least = min(least, float(ratio[k]))
             low, high = log[max(k - 2, 0)], log[min(k + 2, 2000)]

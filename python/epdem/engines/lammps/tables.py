@@ -50,7 +50,7 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
 
 def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres, contacts between them, and with each wall."""
-    values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
+    values = ["overlap", "delta_max", "attached", *[*columns.GROWTH] * p.model.compaction, *columns.FORCE]
     found = {"particles": (p.frame_steps(p.frames), columns.columns_of_frames(p))} if p.frames else {}
     found |= {f"stress_{wall_id(name)}": (p.frame_steps(p.frames), [*TRIANGLES]) for name in p.stress_walls}
     if p.contacts:

@@ -151,14 +151,15 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     return np.cumsum(rows["wall_power"].to_numpy() * np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0))
 
 
-GROWTH = ["added_overlap", "screening", "grown_overlap", "body_pressure", "retreat"]  # of an engine, with compaction
+GROWTH = {"added_overlap": 0.0, "screening": 1.0, "grown_overlap": 0.0, "body_pressure": 0.0, "retreat": 0.0}
+"""The columns that an engine gives with compaction, and their values without it."""
 NORMAL, FORCE = ([f"{name}_{axis}" for axis in "xyz"] for name in ("normal", "force"))  # of the engine
 BY_LAW = ["force", "contact_radius", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
 def _columns_of_engine(p: ScenePlan) -> list[str]:
-    return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *NORMAL, *FORCE]
+    return ["step", "wall", "i", "j", "overlap", "delta_max", *[*GROWTH] * p.model.compaction, *NORMAL, *FORCE]
 
 
 def contact_columns(p: ScenePlan) -> list[str]:
@@ -188,10 +189,9 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     overlaps are larger than those of the spheres, and the rest of GROWTH. What is only near is left out.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
-    raw = touching(p, raw)
+    raw = touching(p, raw if p.model.compaction else raw.assign(**GROWTH))
     before = raw["delta_max"] if p.model.yields else raw["overlap"]  # engines may give that before the step
-    retreat = raw["retreat"] if p.model.compaction else 0.0
-    raw = raw.assign(delta_max=np.maximum(before, raw["overlap"] - retreat))
+    raw = raw.assign(delta_max=np.maximum(before, raw["overlap"] - raw["retreat"]))
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
     turned = (raw["j"] > 0) & (raw["i"] > raw["j"])  # the order of two spheres in an engine is arbitrary
@@ -209,14 +209,11 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
             apart[:, k] -= period * np.round(apart[:, k] / period)
     at_walls = raw[NORMAL].to_numpy(float) if NORMAL[0] in raw else np.zeros((len(raw), 3))
     raw = raw.assign(**dict(zip(NORMAL, np.where(between, _unit(apart), at_walls).T, strict=True)))
-    added = raw["added_overlap"] if p.model.compaction else 0.0
     known = pd.DataFrame({"i": first["type"], "j": second["type"], "radius": first["radius"]})
     known["R_star"] = reduced(first["radius"], second["radius"])
-    retreat = raw["retreat"] if p.model.compaction else 0.0
-    known["overlap"], known["largest"] = raw["overlap"] - retreat + added, raw["delta_max"] + added
-    known["attached"] = raw["attached"]
-    for name, none in (("screening", 1.0), ("grown_overlap", 0.0), ("body_pressure", 0.0), ("retreat", 0.0)):
-        known[name] = raw[name] if p.model.compaction else none
+    known["overlap"] = raw["overlap"] - raw["retreat"] + raw["added_overlap"]
+    known["largest"] = raw["delta_max"] + raw["added_overlap"]
+    known = known.join(raw[["attached", *GROWTH]])
     known["screening"] = known["screening"].where(known["screening"] > 0.0, 1.0)  # 0: a new contact
     table = raw[_columns_of_engine(p)].join(energies(p, known))
     if p.model.bond:
