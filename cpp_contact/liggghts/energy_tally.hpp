@@ -27,7 +27,7 @@ class EnergyTally {
     int i, j, nlocal;
   };
 
-  /// For the pair style, whose settings come first: creates the properties; walls follow. holds: those of this step.
+  /// For the pair style, whose settings come first: creates the properties; walls follow. holds: also elastic energy.
   void create(LAMMPS_NS::LAMMPS* lmp, bool adds_friction, bool adheres, bool holds) {
     for (const char* name : {work_name, energy_name, loaded_name, friction_name, springs_name, adhesive_name}) {
       if (!adds_friction && (name == friction_name || name == springs_name)) continue;

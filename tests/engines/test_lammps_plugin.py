@@ -130,7 +130,7 @@ compute sums all reduce sum f_EP_HISTORY0[1] f_EP_HISTORY0[2] f_EP_HISTORY0[3] f
 
 
 def test_works_alone_change_no_bit(tmp_path):
-    """pair_style ep works: motion and plastic work are those of energies, columns 2 and 3 stay 0."""
+    """pair_style ep works: motion and plastic work equal a run with energies, columns 2 and 3 stay 0."""
     words = "cavity 1e8 0.3 4e5 tangential history 0.3 compaction on"
     dump = DUMP.replace("omegaz", "omegaz f_EP_HISTORY0[1] f_EP_HISTORY0[2] f_EP_HISTORY0[3]")
     more = f"fix floor all wall/ep zplane 0 0.02 {words}"

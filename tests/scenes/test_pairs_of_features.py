@@ -425,23 +425,23 @@ def test_lammps_and_liggghts_move_the_spheres_of_a_heap_alike(chosen, folder):
             assert_names_who_takes_it(tool, folder / "heap.toml", error)
             return
         found.append(outcome.results)
-    ours, theirs = found
+    lammps, liggghts = found
     # m and m/s. A sphere that moves by 0.5 % of its radius in the step in which it parts has no last pull in LIGGGHTS
     limit = 1e-4 if chosen["law"] in ADHESIVE["law"] else 1e-6
     places = [r.particles.set_index(["step", "id"]).sort_index() for r in found]
     assert places[0].index.equals(places[1].index)
     names = ["x", "y", "z", "vx", "vy", "vz", *warm]
     assert np.abs(places[0][names] - places[1][names]).to_numpy().max() < limit
-    names = [n for n in ("omega_x", "plastic_work") if n in theirs.particles]
+    names = [n for n in ("omega_x", "plastic_work") if n in liggghts.particles]
     assert_alike(*places, names, 1e-5 if "rolling" in chosen["contact"] else limit)
-    assert {*ours.rows} == {*theirs.rows}
-    columns = [n for n in theirs.rows if "torque" not in n]
+    assert {*lammps.rows} == {*liggghts.rows}
+    columns = [n for n in liggghts.rows if "torque" not in n]
     rows = [r.rows[columns][1:] for r in found]  # LIGGGHTS's first row has no overlaps
     assert (np.abs(rows[0] - rows[1]).max() <= limit * np.abs(rows[1]).max().clip(lower=1e-9)).all()
     keys = ["step", "wall", "i", "j"]
-    assert ours.contacts[keys].equals(theirs.contacts[keys])
+    assert lammps.contacts[keys].equals(liggghts.contacts[keys])
     if between:
-        assert all(theirs.rows[n].any() for n in ("lid_force_z", "left_force_x", "floor_force_z"))
+        assert all(liggghts.rows[n].any() for n in ("lid_force_z", "left_force_x", "floor_force_z"))
 
 
 def assert_names_who_takes_it(tool, path, error):

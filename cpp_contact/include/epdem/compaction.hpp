@@ -47,7 +47,7 @@ inline constexpr double growth_reach = 0.25;
 /// Smallest gamma.
 inline constexpr double least_screening = 0.05;
 
-/// Smallest loss that is above round-off; that of the smallest area of others is 2e-5.
+/// Smallest loss that is above round-off; the smallest area of other contacts loses 2e-5.
 inline constexpr double least_loss = 1e-12;
 
 /// Other contacts screen a contact from this share of its own area on.

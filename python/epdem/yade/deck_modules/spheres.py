@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The spheres of a scene in YADE: those of the start, those of later phases, those that leave the room."""
+"""The spheres of a scene in YADE: spheres of the start and of later phases, and spheres that leave the room."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
