@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Each target calls scripts and tools.
+unexport PYTHONDONTWRITEBYTECODE  # all processes of the suite would compile the same modules
 .PHONY: setup demo trixie container lammps yade test faults packaging thorough slurm guide browser walltime bench bench-community docs tidy sanitize sanitize-yade lock versions fuzz valgrind reliability tutorials wheel deb release trees rooms clean
 
 setup:

@@ -160,9 +160,12 @@ def test_a_plugin_for_another_lammps_is_refused_with_the_commands_that_build_it(
 
 
 def test_the_version_follows_program_and_plugin(tmp_path, monkeypatch):
-    """A result of an older plugin is not taken for one of the plugin that is there now."""
-    plugin, lmp = tmp_path / "epdemplugin.so", tmp_path / "lmp"
-    lmp.write_text("#!/bin/sh\necho 'Large-scale Atomic/Molecular Massively Parallel Simulator - 1 Jan 2030'\n")
+    """A result of an older plugin is not taken for one of the plugin that is there now. A program is asked once."""
+    plugin, lmp, asked = tmp_path / "epdemplugin.so", tmp_path / "lmp", tmp_path / "asked"
+    says = (
+        f"#!/bin/sh\necho >> {asked}\necho 'Large-scale Atomic/Molecular Massively Parallel Simulator - 1 Jan 20%d'\n"
+    )
+    lmp.write_text(says % 30)
     lmp.chmod(0o755)
     monkeypatch.setenv("EPDEM_LAMMPS", str(lmp))
     monkeypatch.setattr(lammps.paths, "native", lambda name: plugin)
@@ -171,6 +174,9 @@ def test_the_version_follows_program_and_plugin(tmp_path, monkeypatch):
         plugin.write_bytes(content)
         found.append(engine("lammps").version())
     assert found[0] == found[2] != found[1] and found[0].startswith("LAMMPS 1 Jan 2030, ")
+    assert asked.read_text() == "\n"
+    lmp.write_text(says % 131)
+    assert engine("lammps").version().startswith("LAMMPS 1 Jan 20131, ")
 
 
 def test_a_lammps_that_the_user_names_has_its_own_mpi(monkeypatch):

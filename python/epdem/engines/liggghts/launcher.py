@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base import paths
-from ...base.processes import call, captured_output
+from ...base.processes import call, captured_output, said_by
 from ...errors import EngineError
 
 MPIRUN = "mpirun"
@@ -104,7 +104,7 @@ def examine(path: Path, laws: tuple[str, ...]) -> Executable:
 
 
 def _help(path: Path) -> str:
-    return captured_output([str(path), "-log", "none", "-h"], environment())
+    return said_by([str(path), "-log", "none", "-h"], environment())
 
 
 def _version(text: str) -> str:

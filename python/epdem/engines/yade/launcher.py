@@ -10,7 +10,7 @@ from typing import Any
 from ...base import paths
 from ...base.declarations import library_path
 from ...base.files import atomic
-from ...base.processes import call, captured_output
+from ...base.processes import call, said_by
 from ...errors import EngineError
 
 OUT = "out.yade"  # both streams
@@ -33,7 +33,7 @@ def missing() -> str | None:
 
 def version() -> str:
     """YADE's version, and whether its laws are those of the module epdem_yade."""
-    match = re.search(r"version: (\S+)", captured_output([command(), "--version"], environment()))
+    match = re.search(r"version: (\S+)", said_by([command(), "--version"], environment()))
     laws = "epdem_yade" if module() else "normal impacts with the C library ('make yade' builds all else)"
     return f"YADE {match.group(1) if match else '(version unknown)'}, {laws}"
 
