@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of spheres with compaction for every host, and the forces by numpy from positions alone."""
 
+from functools import cache
+
 import numpy as np
 from free_spheres import Scene
 
@@ -31,6 +33,7 @@ def cluster(steps, **more):
     return scene(CLUSTER, MOVES, radius=RADII, dt=1.0 / steps, plane=0, moves=moves, **more)
 
 
+@cache
 def exact(steps):
     """Forces on the cluster by numpy, shape (2 steps + 1, 6, 3), and the largest."""
     t = np.concatenate([np.arange(steps + 1) / steps, np.arange(1, steps + 1) / steps])

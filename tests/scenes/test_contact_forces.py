@@ -46,11 +46,12 @@ CASE = {
         "phase": [timed("rest", "0.6 s")],
     },
     "output": {"contacts": 2, "particles": 2, "loads": True, "energy": True},
-    "numerics": {"time_step": "5 us"},
+    "numerics": {"time_step": "10 us"},
 }
 PRESS = 0.3  # [N]
 PRESSED = copy.deepcopy(CASE)  # to overlaps of half a radius, where contacts grow
 PRESSED["law"] = {"name": "cavity", "finite_strain": True, "compaction": True}
+PRESSED["numerics"] = {"time_step": "5 us"}
 PRESSED["viscous"] = {"restitution": 0.14}
 PRESSED["contact"] = {"friction": 0.5, "tangential_restitution": 0.14}
 LID = {"name": "lid", "kind": "plate", "axis": "z", "center": mm(0, 0, 13), "size": mm(8, 8)}

@@ -61,8 +61,10 @@ def bisect(
         if np.all(a == b):
             break
         middle = 0.5 * (a + b)
-        below = rises(middle)
+        below, before = rises(middle), (a, b)
         a, b = np.where(below, middle, a), np.where(below, b, middle)
+        if np.array_equal(a, before[0]) and np.array_equal(b, before[1]):
+            break  # neighbouring numbers
     return a[()], b[()]  # numbers for numbers
 
 
