@@ -84,6 +84,16 @@ inline void gather_pairs(Block& b, Pass& pass, int n, const Spheres& spheres, co
   }
 }
 
+/// The first of n contacts whose R* is below the least of their pair of materials, -1: none. least: by the place of the
+/// pair's numbers in `constants`.
+inline int first_below(const Block& b, int n, bool several, bool wall, const double* constants, const double* least) {
+  for (int k = 0; k < n; ++k) {
+    const double i = b.radius_i.a[k], R_star = wall ? i : reduced_finite(i, b.radius_j.a[k]);
+    if (R_star < least[(b.material[several ? k : 0] - constants) / most_constants]) return k;
+  }
+  return -1;
+}
+
 /// Adds the forces and torques of n pairs in their order; those of body i stay in registers while its pairs follow each
 /// other. A ghost gets nothing: its owner computes what it gets. beside: begin(i), add(k, j, owned) for each pair of i,
 /// end(i).

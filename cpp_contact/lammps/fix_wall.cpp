@@ -101,6 +101,7 @@ void FixWall::init() {
     claimed_ = true;
   }
   constants_.assign(most_constants * (atom->ntypes + 1), 0.0);
+  judge_.begin(atom->ntypes + 1);
   for (const int type : types_of_group())
     put_constants(*words_.models.law, pair_->words_of(type, place_).material, words_.material, words_.coefficients,
                   constants_.data() + most_constants * type);
@@ -113,9 +114,11 @@ void FixWall::init() {
   if (words_.models.compaction) reach_factor_ = 1.0 + growth_reach;
   if (layout_.gap.root < 0) return;
   reach_ = neighbor->skin;
-  for (const int type : types_of_group())
-    checked_gap(lmp, place_, *words_.models.law, constants_.data() + most_constants * type,
-                pair_->smallest_radius(type), pair_->largest_radius(type));
+  for (const int type : types_of_group()) {
+    const double* const constants = constants_.data() + most_constants * type;
+    checked_gap(lmp, place_, *words_.models.law, constants, pair_->largest_radius(type));
+    judge_.note(type, *words_.models.law, constants, pair_->smallest_radius(type));
+  }
 }
 
 /// Types with a material, and types of spheres that are there: without a material they are an error.
@@ -245,6 +248,7 @@ void FixWall::finish(int n) {
   if (n == 0) return;
   kernels::Block& b = *block_;
   pass_.several = std::any_of(b.material, b.material + n, [&](const double* m) { return m != b.material[0]; });
+  judge_.judge(lmp, place_, *words_.models.law, b, n, pass_.several, true, constants_.data());
   kernels::pad(b, n);
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   for (int k = 0; k < n; ++k) {

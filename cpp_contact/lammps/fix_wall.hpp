@@ -89,6 +89,7 @@ class FixWall : public LAMMPS_NS::Fix {
   void finish(int n);
   void note(int n);
 
+  AdhesionJudge judge_;
   Words words_;
   Layout layout_;
   int most_ = 0, stride_ = 0;

@@ -158,22 +158,24 @@ void PairEp::init_style() {
   frozen_ = freezes.empty() ? 0 : freezes[0]->groupbit;
   measure_radii();
   constants_.assign(width_ * width_ * most_constants, 0.0);
+  judge_.begin(width_ * width_);
   pass_ = {};
 }
 
-/// The largest and smallest radius of each type; of those that fixes will add LAMMPS knows the largest.
+/// The largest and smallest radius of each type; of those that fixes will add LAMMPS knows the largest, and the
+/// smallest is taken as 0.
 void PairEp::measure_radii() {
   std::vector<double> mine(width_, 0.0), least(width_, HUGE_VAL);
-  const auto take = [&](int type, double radius) {
-    mine[type] = std::max(mine[type], radius);
-    least[type] = std::min(least[type], radius);
+  const auto take = [&](int type, double smallest, double largest) {
+    least[type] = std::min(least[type], smallest);
+    mine[type] = std::max(mine[type], largest);
   };
-  for (int i = 0; i < atom->nlocal; ++i) take(atom->type[i], atom->radius[i]);
+  for (int i = 0; i < atom->nlocal; ++i) take(atom->type[i], atom->radius[i], atom->radius[i]);
   for (const char* style : {"^pour", "^deposit"})
     for (Fix* fix : modify->get_fix_by_style(style))
       for (int type = 1; type < width_; ++type) {
         int itype = type;
-        if (void* radius = fix->extract("radius", itype)) take(type, *static_cast<double*>(radius));
+        if (void* radius = fix->extract("radius", itype)) take(type, 0.0, *static_cast<double*>(radius));
       }
   largest_.assign(width_, 0.0);
   smallest_.assign(width_, HUGE_VAL);
@@ -204,7 +206,11 @@ double PairEp::init_one(int i, int j) {
   const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
   if (models_.compaction) return (1.0 + growth_reach) * (largest_[i] + largest_[j]);
   const double least = 1.0 / (1.0 / smallest_[i] + 1.0 / smallest_[j]);
-  return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, least, R_star);
+  judge_.note(j * width_ + i, *models_.law, constants, least);
+  if (judge_.note(i * width_ + j, *models_.law, constants, least) && least > 0.0 && comm->me == 0)
+    utils::logmesg(lmp, "epdem: {}: the run ends where the smallest spheres of these types meet: {}\n", place,
+                   models_.law->refused_adhesion(constants + kernels::law_data, least));
+  return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, R_star);
 }
 
 void PairEp::set_pass(bool counts) {
@@ -285,6 +291,7 @@ void PairEp::finish(int n) {
   if (n == 0) return;
   kernels::Block& b = *block_;
   fetch(n, [&](int k) { return history_->at(place_[k]); });
+  judge_.judge(lmp, "pair_style ep", *models_.law, b, n, pass_.several, false, constants_.data());
   kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
   if (models_.compaction) {

@@ -67,6 +67,7 @@ class PairEp : public LAMMPS_NS::Pair {
   std::vector<PairOfTypes> types_;
   std::vector<double> constants_;           // of i * width + j
   std::vector<double> largest_, smallest_;  // radius by type [length]
+  AdhesionJudge judge_;
   Models models_;
   bool energies_ = false, holds_ = false, strain_ = false;  // holds_: with the elastic energy
   Layout layout_;

@@ -70,6 +70,7 @@ Law law_of() {
             (void)R_star;
             return 0.0;
           },
+          [](const double* numbers) { return least_R_star(law_at<Class>(numbers)); },
           [](const double* numbers, double R_star) { return refused_adhesion(law_at<Class>(numbers), R_star); }};
 }
 
@@ -308,15 +309,36 @@ void refuse_rigid_bodies(LAMMPS* lmp, const std::string& place) {
                     ", which contacts do not know; remove restitution");
 }
 
-double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const double* constants, double R_least,
-                   double R_most) {
-  const std::string refused = law.refused_adhesion(constants + kernels::law_data, R_least);
-  if (!refused.empty()) fail(lmp, place + ": " + refused);
+double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const double* constants, double R_most) {
   const double gap = law.largest_gap(constants + kernels::law_data, R_most), skin = lmp->neighbor->skin;
   if (gap > skin)
     fail(lmp, place + ": law " + law.name + " pulls across gaps up to " + number(gap) + ", above the skin " +
                   number(skin) + "; increase the skin of command neighbor");
   return gap;
+}
+
+void AdhesionJudge::begin(size_t pairs) {
+  least_.assign(pairs, 0.0);
+  judges_ = false;
+}
+
+bool AdhesionJudge::note(size_t place, const Law& law, const double* constants, double R_star) {
+  least_[place] = law.least_R_star(constants + kernels::law_data);
+  const bool refused = R_star < least_[place];
+  judges_ |= refused;
+  return refused;
+}
+
+void AdhesionJudge::judge(LAMMPS* lmp, const std::string& place, const Law& law, const kernels::Block& b, int n,
+                          bool several, bool wall, const double* constants) const {
+  const int k = judges_ ? kernels::first_below(b, n, several, wall, constants, least_.data()) : -1;
+  if (k < 0) return;
+  const auto tag = [&](int i) { return std::to_string(lmp->atom->tag[i]); };
+  const double R_i = b.radius_i.a[k], R_star = wall ? R_i : reduced_finite(R_i, b.radius_j.a[k]);
+  const std::string text = place + ": step " + std::to_string(lmp->update->ntimestep) + ", sphere " + tag(b.i[k]) +
+                           (wall ? "" : " and " + tag(b.j[k])) + ": " +
+                           law.refused_adhesion(b.material[several ? k : 0] + kernels::law_data, R_star);
+  lmp->error->one(FLERR, text);
 }
 
 const kernels::Kernels& kernels_of(LAMMPS* lmp) {

@@ -29,7 +29,8 @@ struct Law {
   void (*put)(double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
   double (*largest_gap)(const double* numbers, double R_star);
-  /// The sentence on a work of adhesion that such a law refuses, else empty.
+  /// The least R* [length] that the adhesion of such a law allows, and the sentence on a smaller one.
+  double (*least_R_star)(const double* numbers);
   std::string (*refused_adhesion)(const double* numbers, double R_star);
 };
 
@@ -85,10 +86,25 @@ void check_settings(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 /// Ends the run if there are rigid bodies: a dashpot needs their masses.
 void refuse_rigid_bodies(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 
-/// Largest gap [length] across which a contact of these constants pulls; ends the run if it is above the skin, or if
-/// the law refuses the work of adhesion at the smaller R* [length].
+/// Largest gap [length] across which a contact of these constants pulls; ends the run if it is above the skin.
 double checked_gap(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const double* constants,
-                   double R_least, double R_most);
+                   double R_most);
+
+/// The least R* [length] that the adhesion of each pair of materials allows. Contacts are judged one by one where the
+/// smallest spheres would be refused: they may never meet.
+class AdhesionJudge {
+ public:
+  void begin(size_t pairs);
+  /// Whether smallest spheres of `R_star` [length] would be refused by the constants at this place.
+  bool note(size_t place, const Law& law, const double* constants, double R_star);
+  /// Ends the run at the first of n contacts below the least R*.
+  void judge(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const kernels::Block& b, int n,
+             bool several, bool wall, const double* constants) const;
+
+ private:
+  std::vector<double> least_;
+  bool judges_ = false;
+};
 
 /// The kernels of the widest instruction set of this processor, or of EPDEM_SIMD; ends the run if that is none.
 const kernels::Kernels& kernels_of(LAMMPS_NS::LAMMPS* lmp);

@@ -37,6 +37,8 @@ class LawModel : public NormalModel {
     const double R_star = wall_ ? s.radi : reduced_finite(s.radi, s.radj);
     const double delta = wall_ ? s.deltan : s.radsum - s.r;
     const bool keep = s.computeflag && s.shearupdate;
+    if constexpr (adheres<Law>)
+      if (judges() && R_star < least()[s.itype * width_ + s.jtype]) refuse_contact(s.i, wall_ ? -1 : s.j, s.jtype);
 
     State<Law> before{};
     double* const history = s.contact_history;
@@ -124,15 +126,9 @@ class LawModel : public NormalModel {
     return gap;
   }
 
-  std::string refused_adhesion(const std::vector<double>& radii) const override {
-    for (int i = 1; i < width_; ++i)
-      for (int j = 1; j < width_; ++j) {
-        const double R_star = wall_ ? radii[i] : 1.0 / (1.0 / radii[i] + 1.0 / radii[j]);
-        if (!wall_ && std::isinf(radii[i] + radii[j])) continue;  // no two spheres meet
-        const std::string text = epdem::refused_adhesion(table_[i * width_ + j].law, R_star);
-        if (!text.empty()) return "atom types " + std::to_string(i) + " and " + std::to_string(j) + ": " + text;
-      }
-    return {};
+  double least_R_star(int i, int j) const override { return epdem::least_R_star(table_[i * width_ + j].law); }
+  std::string refused_adhesion(int i, int j, double R_star) const override {
+    return epdem::refused_adhesion(table_[i * width_ + j].law, R_star);
   }
 
  private:

@@ -14,6 +14,8 @@ class LAMMPS;
 
 namespace epdem::liggghts {
 
+inline std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
+
 /// Use of coefficientRestitution by the dashpot of the tangential model.
 enum class Dashpot {
   off,       // not used

@@ -14,6 +14,7 @@
 #include "host.hpp"
 #include "materials.hpp"
 #include "normal_state.hpp"
+#include "simulation.hpp"
 #include "strain.hpp"
 
 namespace epdem::liggghts {
@@ -165,6 +166,19 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   }
   const GapPlaces& gap() const { return gap_; }
 
+  /// Whether spheres of this run can be refused because of their adhesion, and the least R* of the types i * width + j.
+  bool judges() const { return !least_.empty(); }
+  const std::vector<double>& least() const { return least_; }
+  /// Ends the run at a contact below the least R*; j: -1 at a wall, which has a type of its own.
+  void refuse_contact(int i, int j, int type_j) const {
+    const double R_i = atom->radius[i], R_star = j < 0 ? R_i : reduced_finite(R_i, atom->radius[j]);
+    const std::string other = j < 0 ? " and a wall" : " and " + std::to_string(atom->tag[j]);
+    const std::string text = "model " + law_.model + ": step " + std::to_string(update->ntimestep) + ", sphere " +
+                             std::to_string(atom->tag[i]) + other + ", " + both(atom->type[i], type_j) + ": " +
+                             refused_adhesion(atom->type[i], type_j, R_star);
+    error->one(FLERR, text.c_str());
+  }
+
   /// The law's place in the register, and its constants of two types, for our loops.
   virtual int place() const = 0;
   virtual void put_constants(int i, int j, double* constants) const = 0;
@@ -195,8 +209,9 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   virtual void set_materials(const Materials& m) = 0;
   virtual std::vector<double> resistances(double cohesive) const = 0;
   virtual double largest_gap(double smallest_radius) const = 0;
-  /// The sentence on a work of adhesion that the law refuses for spheres of these smallest radii by type, else empty.
-  virtual std::string refused_adhesion(const std::vector<double>& radii) const = 0;
+  /// The least R* of bodies of two types that the law's adhesion allows, and the sentence on a smaller one.
+  virtual double least_R_star(int i, int j) const = 0;
+  virtual std::string refused_adhesion(int i, int j, double R_star) const = 0;
 
   /// Whether the history holds the step of the last evaluation that was kept.
   bool has_step() const { return !wall_ && (history_size_ > 0 || others_have_history_); }
@@ -221,7 +236,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   GapPlaces gap_;
   double now_ = 0.0;
   bool plastic_work_ = false, contact_strain_ = false, compaction_ = false, bonds_ = false;
-  double** bond_ = nullptr;  // strengths of bonds [Pa] by types
+  double** bond_ = nullptr;    // strengths of bonds [Pa] by types
+  std::vector<double> least_;  // empty: no contact can be refused
   EnergyTally tally_;
   LargestStrain strain_;
   Growth growth_;
@@ -232,11 +248,11 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   /// The largest gap, 1.6088 (Gamma^2 R*/E*^2)^(1/3), takes the largest share of the smallest sphere at a wall; half a
   /// hundredth more is for the step after the last one in contact.
   void reach() {
+    least_.clear();
     const std::vector<double> radii = smallest_radii(lmp);
     const double smallest = *std::min_element(radii.begin(), radii.end());
     if (!std::isfinite(smallest)) return;  // no spheres, and nothing that will add any
-    const std::string refused = refused_adhesion(radii);
-    if (!refused.empty()) fail(refused);
+    find_least(radii);
     const double gap = largest_gap(smallest), factor = 1.005 + gap / smallest;
     if (!(factor > neighbor->contactDistanceFactor)) return;
     register_contact_distance(lmp, factor);
@@ -245,6 +261,25 @@ class NormalModel : protected LAMMPS_NS::Pointers {
                   "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g",
                   law_.model.c_str(), gap, smallest, factor);
     say(lmp, line);
+  }
+
+  /// Contacts are judged one by one where the adhesion of the smallest spheres of two types would be refused: they may
+  /// never meet. A line says so before the run.
+  void find_least(const std::vector<double>& radii) {
+    std::vector<double> least(width_ * width_);
+    bool refuses = false;
+    for (int i = 1; i < width_; ++i)
+      for (int j = 1; j < width_; ++j) {
+        least[i * width_ + j] = least_R_star(i, j);
+        if (!wall_ && std::isinf(radii[i] + radii[j])) continue;  // no two spheres meet
+        const double R_star = wall_ ? radii[i] : reduced_finite(radii[i], radii[j]);
+        if (!(R_star < least[i * width_ + j])) continue;
+        refuses = true;
+        if (!wall_ && i <= j)
+          say_once(lmp, "epdem: " + law_.model + ": the run ends where the smallest spheres of " + both(i, j) +
+                            " meet: " + refused_adhesion(i, j, R_star));
+      }
+    if (refuses) least_ = least;
   }
 
   /// reset_timestep came between two runs: the stored steps move with it.

@@ -17,8 +17,6 @@
 
 namespace epdem::liggghts {
 
-inline std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
-
 class Reader {
  public:
   Reader(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law)

@@ -402,21 +402,25 @@ def test_pull_off_force_by_slow_separation(host, law, floor, deepest, tmp_path):
     assert force[-1] == 0
 
 
-@every_host
-def test_an_attraction_with_which_growth_creates_energy_is_refused_with_its_limit(host, tmp_path):
-    """2 % above the limit of theory; 2 % below it the run ends. YADE judges the contact with the plane, the others two
-    like spheres, of half its R*."""
-    limit = float(sticky("cavity_adhesive")[1].largest_adhesion) * (1.0 if host.startswith("yade") else 0.5)
+@pytest.mark.parametrize(("host", "meets"), on(HOSTS, ["plane", "sphere"]) + on([LIGGGHTS], ["sphere, generic loop"]))
+def test_a_contact_whose_growth_creates_energy_is_refused_with_its_limit_when_it_forms(host, meets, tmp_path):
+    """2 % above the limit of theory, in proportion to R*: two spheres on the plane that never meet, or two spheres that
+    meet in the seventh step; 2 % below the limit the run ends."""
+    limit = float(sticky("cavity_adhesive")[1].largest_adhesion) * (1.0 if meets == "plane" else 0.5)
+    scene = on_plane("cavity_adhesive", np.zeros((2, 3)), R=R_ADHESIVE, z=R_ADHESIVE - 1e-9, dt=1e-8, steps=3)
+    if meets != "plane":
+        x, v = np.array([[-1.0, 0, 0], [1.0, 0, 0]]) * (R_ADHESIVE + 6.5e-7), [[10.0, 0, 0], [-10.0, 0, 0]]
+        scene = replace(scene, x=x, v=v, plane=None, steps=10, loop="generic" * ("generic" in meets))
     for share in (0.98, 1.02):
-        more = {"materials": [sticky("cavity_adhesive")[0] | {"workOfAdhesion": share * limit}]}
-        scene = on_plane("cavity_adhesive", np.zeros((1, 3)), R=R_ADHESIVE, dt=1e-8, steps=3, **more)
+        scene = replace(scene, materials=[sticky("cavity_adhesive")[0] | {"workOfAdhesion": share * limit}])
         if share < 1:
             frames(host, tmp_path / "below", scene)
             continue
         with pytest.raises(AssertionError) as refused:
             frames(host, tmp_path / "above", scene)
-        found = re.search(r"R\* = 0\.00\d+ yields; law cavity_adhesive holds up to (\S+) there", str(refused.value))
-        assert float(found[1]) == pytest.approx(limit, rel=1e-6)
+        found = re.findall(r"R\* = 0\.00\d+ yields; law cavity_adhesive holds up to (\S+) there", str(refused.value))
+        assert float(found[-1]) == pytest.approx(limit, rel=1e-6)  # the first one tells of the smallest spheres
+        assert host.startswith("yade") or meets == "plane" or "step 7, sphere" in str(refused.value)
 
 
 @adhesive_law

@@ -37,17 +37,26 @@ struct Range {
 /// Values of a law's parameter.
 inline Range range_of(const Parameter& p) noexcept { return {0.0, p.below, p.may_vanish}; }
 
+/// The least R* of bodies between which the law's work of adhesion creates no energy; 0: any R*. The largest work is in
+/// proportion to R*.
+template <class Law>
+double least_R_star(const Law& law) {
+  if constexpr (adheres<Law>)
+    if (law.pull > 0.0) return law.pull / pi / largest_adhesion(law, 1.0);
+  return 0.0;
+}
+
 /// The sentence on a work of adhesion with which a law would create energy between bodies of this R*, else empty.
 template <class Law>
 std::string refused_adhesion(const Law& law, double R_star) {
-  if constexpr (adheres<Law>) {
-    const double given = law.pull / pi;
-    const double most = given > 0.0 && std::isfinite(R_star) ? largest_adhesion(law, R_star) : unlimited;
-    if (given > most)
+  const double least = least_R_star(law);
+  if constexpr (adheres<Law>)
+    if (R_star < least) {
+      const double given = law.pull / pi;
       return "the work of adhesion " + number(given) + " creates energy while a contact of R* = " + number(R_star) +
-             " yields; law " + Law::name + " holds up to " + number(most) +
+             " yields; law " + Law::name + " holds up to " + number(given * R_star / least) +
              " there, in proportion to R* and to the cube of the yield stress; lower it, or take law thornton_ning";
-  }
+    }
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include "force.h"
 #include "kernels/gather.hpp"
 #include "modify.h"
+#include "normal.hpp"
 
 namespace epdem::liggghts::loop {
 
@@ -165,6 +166,7 @@ void PairLoop::finish(const Plan& plan, int n) {
   if (n == 0) return;
   if constexpr (reach == Reach::grown) pairs_.note(place_, n);
   fetch(plan, n);
+  if (plan.judge) judge(plan, n);
   pad(*block_, n);
   plan.kernel(*block_, n, pass_);
   if (plan.strain) note_strain(*plan.strain, *block_);
@@ -175,6 +177,12 @@ void PairLoop::finish(const Plan& plan, int n) {
     turns ? scatter<true, false, reach>(plan, n) : scatter<false, false, reach>(plan, n);
   if (plan.tally && plan.adds_friction) add_friction(*plan.tally, n);
   if (plan.heat) plan.heat->sums().add_pairs(*block_, n);
+}
+
+void PairLoop::judge(const Plan& plan, int n) const {
+  const Block& b = *block_;
+  const int k = first_below(b, n, pass_.several, false, plan.constants.data(), plan.judge->least().data());
+  if (k >= 0) plan.judge->refuse_contact(b.i[k], b.j[k], atom->type[b.j[k]]);
 }
 
 /// A pair without a mark is new: its history is not read.

@@ -14,6 +14,10 @@
 #include "state.hpp"
 #include "strain.hpp"
 
+namespace epdem::liggghts {
+class NormalModel;
+}
+
 namespace epdem::liggghts::loop {
 
 /// Settings and properties of a run.
@@ -22,16 +26,17 @@ struct Plan {
   const SphereKernels* spheres = nullptr;
   int friction = 0;  // place in Frictions
   ContactSettings settings{};
-  bool rolls = false;               // rolling friction has a history
-  bool adds_friction = false;       // friction computes its work
-  EnergyTally* tally = nullptr;     // where plastic work is added, if it is requested
-  LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
-  FixHeat* heat = nullptr;          // of the spheres, with temperatures
-  Growth* growth = nullptr;         // of the spheres, with compaction
-  GapPlaces gap;                    // in a history
-  int last_step = -1;               // place in a history
-  int width = 0;                    // number of types + 1
-  std::vector<double> constants;    // most_constants for each type of i * width + type of j; see Constant
+  bool rolls = false;                  // rolling friction has a history
+  bool adds_friction = false;          // friction computes its work
+  EnergyTally* tally = nullptr;        // where plastic work is added, if it is requested
+  LargestStrain* strain = nullptr;     // where the largest strain is noted, if it is requested
+  FixHeat* heat = nullptr;             // of the spheres, with temperatures
+  Growth* growth = nullptr;            // of the spheres, with compaction
+  const NormalModel* judge = nullptr;  // of the adhesion of contacts, if it can refuse one
+  GapPlaces gap;                       // in a history
+  int last_step = -1;                  // place in a history
+  int width = 0;                       // number of types + 1
+  std::vector<double> constants;       // most_constants for each type of i * width + type of j; see Constant
 };
 
 /// Why the atoms of a run, or what it stores of its contacts, keep pairs and walls from our loops; nullptr: nothing.
@@ -71,6 +76,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void finish(const Plan& plan, int n);
   bool stands_across_gap(const Plan& plan, int i, int j, int slot, bool marked) const;
   void fetch(const Plan& plan, int n);
+  void judge(const Plan& plan, int n) const;
   template <bool torques, bool tallies, Reach reach>
   void scatter(const Plan& plan, int n);
   void add_friction(EnergyTally& tally, int n);

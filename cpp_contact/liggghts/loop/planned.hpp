@@ -49,6 +49,7 @@ class Planned {
     plan_.strain = normal.strain();
     plan_.heat = model_.heat();
     plan_.growth = normal.growth();
+    plan_.judge = normal.judges() ? &normal : nullptr;
     plan_.gap = normal.gap();
     const Kernels& kernels = state_of(lmp_).kernels;
     plan_.spheres = &kernels.spheres;
