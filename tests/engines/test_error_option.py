@@ -12,6 +12,7 @@ from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.impacts import cost
 from epdem.impacts.run import run
+from marks import thorough
 
 STEEL, STICKY, VISCOUS = (CASES / f"{name}.toml" for name in ("steel_wall", "adhesion_thornton_1998", "viscous_steel"))
 
@@ -32,8 +33,14 @@ def test_the_measured_error_is_between_half_and_one_and_a_half_of_the_requested_
     assert 0.5 <= measured(path, name, law, 1e-3, tmp_path / "out") <= 1.5
 
 
-@pytest.mark.parametrize("error", [1e-2, 1e-4, 1e-5])
-@pytest.mark.parametrize("law", [*LAWS, *ADHESIVE])
+@pytest.mark.parametrize(
+    ("law", "error"),
+    [
+        thorough(law, error, unless=law != "cavity_adhesive" or error > 1e-4)  # its steps are the slowest
+        for law in (*LAWS, *ADHESIVE)
+        for error in (1e-2, 1e-4, 1e-5)
+    ],
+)
 def test_other_errors_are_met_too(law, error, tmp_path):
     assert 0.5 <= measured(STICKY if law in ADHESIVE else STEEL, "embedded", law, error, tmp_path) <= 1.5
 

@@ -13,6 +13,7 @@ from epdem.errors import CaseError
 from epdem.scenes.plan.model import pair_law
 from epdem.scenes.plan.plan import plan
 from epdem.theory.pair import E_star
+from marks import thorough
 
 STRENGTH = 100e6
 
@@ -27,7 +28,7 @@ def tablet(**changes):
     return data | changes
 
 
-@pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS, CLASSES])
+@pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS, thorough(*CLASSES.values, marks=CLASSES.marks, id="yade")])
 def test_a_tablet_is_pressed_and_broken(host, tmp_path):
     """Energies by two routes; no pull is above strength times area, and each pull is its spring's.
 
