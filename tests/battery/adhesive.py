@@ -44,13 +44,14 @@ def ask(lines: list[str]) -> list[np.ndarray]:
 class Contact:
     """A pair with adhesion [SI]; p_y None: it does not yield. m_star is that of a solid sphere of R_star.
 
-    cavity: law cavity_adhesive, and p_y is its yield stress."""
+    cavity: law cavity_adhesive, and p_y is its yield stress; c_strain: its finite strain."""
 
     p_y: float | None = None
     Gamma: float = GAMMA
     R_star: float = R_FINE
     E_star: float = E_STEEL
     cavity: bool = False
+    c_strain: float = 1e6
 
     @property
     def m_star(self) -> float:
@@ -60,7 +61,7 @@ class Contact:
     def theory(self) -> JKR:
         numbers = {"E_star": self.E_star, "R_star": self.R_star, "Gamma": self.Gamma}
         if self.cavity:
-            return CavityAdhesive(**numbers, Y=self.p_y)
+            return CavityAdhesive(**numbers, Y=self.p_y, c_strain=self.c_strain, share=0.5)
         return JKR(**numbers) if self.p_y is None else ThorntonNing(**numbers, p_y=self.p_y)
 
     @functools.cached_property
@@ -70,7 +71,7 @@ class Contact:
     @property
     def words(self) -> str:
         name = "cavity_adhesive" if self.cavity else "jkr" if self.p_y is None else "thornton_ning"
-        return f"{name} {self.E_star!r} {self.R_star!r} {self.Gamma!r} {self.p_y or 0.0!r}"
+        return f"{name} {self.E_star!r} {self.R_star!r} {self.Gamma!r} {self.p_y or 0.0!r} {self.c_strain!r}"
 
     def path(self, overlaps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Force [N], contact radius [m] and stored energy [J] at prescribed overlaps [m], one after the other."""

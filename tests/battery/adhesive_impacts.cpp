@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
 //
-// impact LAW E* R* Gamma p_y m* V dt gap steps: rebound speed (0: still attached after `steps`), largest force, largest
+// impact LAW E* R* Gamma p_y c_strain m* V dt gap steps: rebound speed (0: still attached after `steps`), largest force, largest
 //     overlap, smallest force but in the step of touch, overlap and step of the last attached sample
 // twice LAW ...: the same of a second impact, the pair being sent back with the speed at which it came out
-// path LAW E* R* Gamma p_y n overlap_1 ...: force, radius and stored energy at prescribed overlaps, closing speed 0
-// books LAW E* R* Gamma p_y n overlap_1 ...: force, stored energy, work of yield and of adhesion so far
+// path LAW E* R* Gamma p_y c_strain n overlap_1 ...: force, radius and stored energy at prescribed overlaps, closing speed 0
+// books LAW E* R* Gamma p_y c_strain n overlap_1 ...: force, stored energy, work of yield and of adhesion so far
 // hertz|thornton|cavity E* R* p_y n overlap_1 ...: the same by the laws without adhesion
-// The p_y of cavity_adhesive is its yield stress.
-// gap LAW E* R* Gamma p_y: the largest gap across which the law pulls
+// The p_y of cavity_adhesive is its yield stress; c_strain is its alone.
+// gap LAW E* R* Gamma p_y c_strain: the largest gap across which the law pulls
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -113,7 +113,7 @@ void plain(const Law& law, double R_star) {
 int main() {
   std::string what, name;
   while (std::cin >> what) {
-    double E_star, R_star, numbers[] = {0.0, 0.0, 1.60, 2.8}, of_cavity[] = {0.0, 1.60, 2.8, no_finite_strain};
+    double E_star, R_star, numbers[] = {0.0, 0.0, 1.60, 2.8, 0.0}, of_cavity[] = {0.0, 1.60, 2.8, no_finite_strain};
     if (what == "hertz" || what == "thornton" || what == "cavity") {
       std::cin >> E_star >> R_star >> numbers[0];
       of_cavity[0] = numbers[0];
@@ -125,7 +125,7 @@ int main() {
         plain(Thornton(E_star, numbers), R_star);
       continue;
     }
-    std::cin >> name >> E_star >> R_star >> numbers[0] >> numbers[1];
+    std::cin >> name >> E_star >> R_star >> numbers[0] >> numbers[1] >> numbers[4];
     const Jkr<double> jkr(E_star, numbers);
     const ThorntonNing<double> ning(E_star, numbers);
     const CavityAdhesive<double> cavity(E_star, numbers);

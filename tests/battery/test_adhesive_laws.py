@@ -9,7 +9,8 @@ from adhesive import DENSITY, E_STEEL, R_FINE, Contact, ask, e_n_errors, impacts
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from epdem.theory import adhesion
+from epdem.theory import adhesion, restitution
+from epdem.theory.cavity import Cavity
 
 CONTACTS = {
     "jkr": Contact(),
@@ -18,6 +19,7 @@ CONTACTS = {
     "0.5 GPa": Contact(0.5e9),
     "cavity, yields late": Contact(1e9 / 2.8, Gamma=0.02, cavity=True),
     "cavity, yields at touch": Contact(1e9 / 2.8, Gamma=0.2, cavity=True),
+    "cavity, finite strain": Contact(2e9, Gamma=30.0, cavity=True, c_strain=0.82),
 }
 every_contact = pytest.mark.parametrize("c", CONTACTS.values(), ids=CONTACTS)
 
@@ -126,6 +128,15 @@ def test_without_adhesion_the_forces_are_those_of_the_other_headers(name, p_y, s
     assert np.abs(U - row[2::3]).max() <= 1e-11 * row[2::3].max()
 
 
+def test_without_adhesion_an_impact_is_that_of_the_other_theory():
+    """The step of parting of a contact that pulls with nothing has a force of 0."""
+    c = Contact(1e9 / 2.8, Gamma=0.0, cavity=True)
+    for V in (0.1, 1.0, 10.0):
+        exact = restitution.impact(Cavity(E_star=E_STEEL, R_star=R_FINE, Y=c.p_y), m_star=c.m_star, speed=V)
+        ((rebound, *_),) = ask([c.line(V, float(exact.contact_time) / 400, 0.3, 800)])
+        assert rebound / V == pytest.approx(float(exact.e_n), abs=5e-5)
+
+
 @settings(max_examples=200)
 @given(
     st.lists(st.floats(-1e100, 1e100), min_size=1, max_size=20), st.sampled_from([*CONTACTS.values()]), st.booleans()
@@ -137,9 +148,10 @@ def test_force_is_never_nan_for_any_finite_overlap(overlaps, c, adheres):
 
 
 NEAR_THE_LIMIT = Contact(1e9 / 2.8, Gamma=0.999 * 0.2155120, cavity=True)
+SOFT = Contact(0.02 * E_STEEL, Gamma=0.999 * 5.953794 * 0.02**3 * E_STEEL * R_FINE, cavity=True, c_strain=0.82)
 
 
-@pytest.mark.parametrize("c", [*CONTACTS.values(), NEAR_THE_LIMIT])
+@pytest.mark.parametrize("c", [*CONTACTS.values(), NEAR_THE_LIMIT, SOFT])
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_random_walk_takes_no_energy_out_of_a_contact_and_the_books_close(c, seed):
     """Work of the force by trapezoids = stored + yield + adhesion at each step; the steps in which the force jumps are

@@ -30,7 +30,7 @@ static double number(std::mt19937_64& r) {
 template <class Law>
 static int bad() {
   std::mt19937_64 r(7);
-  const double parameter[] = {1e9, 1.6, 2.8, epdem::no_finite_strain};
+  const double parameter[] = {1e9, 1.6, 2.8, epdem::no_finite_strain, epdem::no_finite_strain};
   const Law law = epdem::law_of<Law>(1.1e11, parameter, 1.0);
   int found = 0;
   for (int n = 0; n < 2000000; ++n) {

@@ -29,6 +29,7 @@ LAWS = {
     "jkr": {ADHESION: 50.0},
     "thornton_ning": {ADHESION: 50.0},
     "cavity_adhesive": {ADHESION: 40.0},
+    "cavity_adhesive with finite_strain": {ADHESION: 40.0, "finite_strain": 0.82},
 }
 SPEEDS = np.geomspace(0.01, 100.0, 13)
 TWICE = {"speed", "overlap_max", "residual_overlap", "work_in", "work_out", "plastic_work"}

@@ -22,6 +22,7 @@ LAWS = {
     "thornton_ning": {"workOfAdhesion": GAMMA, "yieldPressure": 2.8 * Y},
     "cavity_adhesive": {"workOfAdhesion": GAMMA / 2, "yieldStress": Y, "firstYieldRatio": 1.6, "plasticRatio": 2.8},
 }
+LAWS["cavity_adhesive, finite strain"] = LAWS["cavity_adhesive"] | {"workOfAdhesion": GAMMA / 4, "finiteStrain": 0.82}
 OF_PLANE = {"E": RIGID, "nu": 0.0, "yieldPressure": RIGID, "yieldStress": RIGID, "workOfAdhesion": 0.25}
 SPEEDS = np.array([0.01, 0.1, 0.5, 1.0])
 ALONE = np.array([[6.0 * k, 0.0, 1.001] for k in range(4)]), np.array([[0.0, 0.0, -v] for v in SPEEDS])

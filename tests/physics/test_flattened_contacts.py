@@ -135,6 +135,78 @@ def test_the_work_of_growth_is_the_quadrature_of_its_force(Gamma):
         assert float(law.work(top)) == pytest.approx(exact, rel=1e-11)
 
 
+SOFT = {"E_star": 1.0, "R_star": 1.0, "Y": 0.02}  # a_Y = 0.05 R*
+SOFT_LIMIT = 5.953794  # Y^3 R*/E*^2 of a sphere on a rigid plane with finite strain, by 400,001 points of the condition
+
+
+def softened(log, share, q):
+    """Force, radius and overlap of `cavity` with finite strain at ln alpha/alpha_Y: formulas of docs/strain.md."""
+    y = mp.mpf(SOFT["Y"])
+    a_Y, top = mp.pi * mp.mpf("1.6") * y / 2, mp.mpf(3) * (mp.mpf("2.8") - mp.mpf("3.2") / 3) - mp.log(2)
+    middle, b = log < top, a_Y**2 * mp.exp(log)
+    a = a_Y * mp.exp(q * log) if middle else mp.sqrt(2 * b)
+    p = y * (mp.mpf("3.2") / 3 + 2 * q / 3 * log) if middle else mp.mpf("2.8") * y
+    f = [1 - mp.exp(-mp.mpf("0.82") * (share * x) ** -mp.mpf("0.7")) for x in (a, a_Y)]
+    kept = 1 - mp.mpf(share) ** 2 / 2 * (b - a_Y**2)
+    return mp.pi * a * a * kept * p * f[0] / f[1], a * mp.sqrt(kept), b
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0])
+@pytest.mark.parametrize("strength", [0.1, 0.9])
+def test_the_work_of_growth_with_finite_strain_is_the_quadrature_of_its_force(strength, share):
+    """F d(alpha) = (F_b - P_t) d(alpha_b - d) of d = sqrt(2 pi Gamma a), by mpmath in ln alpha_b; strength: Gamma over
+    its largest value."""
+    Gamma = strength * SOFT_LIMIT * SOFT["Y"] ** 3
+    law = CavityAdhesive(**SOFT, Gamma=Gamma, c_strain=0.82, share=share)
+    with mp.workdps(20):
+        top = mp.mpf(3) * (mp.mpf("2.8") - mp.mpf("3.2") / 3) - mp.log(2)
+        q = (1 + mp.log(2) / top) / 2
+
+        def force(log):
+            F, a, _ = softened(log, share, q)
+            return F - mp.sqrt(8 * mp.pi * Gamma * a**3)
+
+        def overlap(log):
+            _, a, b = softened(log, share, q)
+            return b - mp.sqrt(2 * mp.pi * Gamma * a)
+
+        for ends in ([0.01, 1.0], [1.0, top, 5.0]):
+            ends = [mp.mpf(x) for x in ends]
+            exact = mp.quad(lambda x: force(x) * mp.diff(overlap, x), ends)
+            a = [float(softened(x, share, q)[1]) for x in (ends[0], ends[-1])]
+            assert float(law.work(a[1]) - law.work(a[0])) == pytest.approx(float(exact), rel=1e-9)
+            for k, x in enumerate((ends[0], ends[-1])):
+                assert float(law.overlap(a[k])) == pytest.approx(float(overlap(x)), rel=1e-11)
+                assert float(law.force(a[k])) == pytest.approx(float(force(x)), rel=1e-11)
+                assert float(law.radius(float(overlap(x)))) == pytest.approx(a[k], rel=1e-11)
+
+
+@pytest.mark.parametrize("V", [3e-3, 0.05])
+def test_the_energies_of_an_impact_with_finite_strain_close(V):
+    law = CavityAdhesive(**SOFT, Gamma=4 * SOFT["Y"] ** 3, c_strain=0.82, share=0.5)
+    x = adhesion.impact(law, m_star=1.0, speed=V)
+    branch, _ = law.branch(x.radius_max)
+    first = law.touch_radius
+    lost = x.plastic_work + branch.energy(branch.fold_radius) - law.branch(first)[0].energy(first)
+    assert float(x.work_in) == pytest.approx(float(x.work_out + lost), rel=1e-12)
+    other = CavityAdhesive(**SOFT, Gamma=4 * SOFT["Y"] ** 3)
+    assert float(x.e_n) < float(adhesion.impact(other, m_star=1.0, speed=V).e_n)
+
+
+def test_finite_strain_lowers_the_largest_adhesion():
+    """Trapezoids of d(W_b - U) - d (2 E* a d alpha_b - dF_b) up to the least area of share = 1."""
+    law = CavityAdhesive(**SOFT, Gamma=0.0, c_strain=0.82)
+    assert float(law.largest_adhesion) == pytest.approx(SOFT_LIMIT * SOFT["Y"] ** 3, rel=1e-6)
+    body = Cavity(**SOFT, c_strain=0.82)
+    b = np.geomspace(1.0001 * body.yield_overlap, body.least_overlap, 400_001)
+    F, U, a = body.force(b), body.recovered_work(b), body.radius(b)
+    kept = 0.5 * (F[1:] + F[:-1]) * np.diff(b) - np.diff(U)
+    stiff = (a[1:] + a[:-1]) * np.diff(b) - np.diff(F)
+    d = kept[stiff > 0] / stiff[stiff > 0]
+    middle = 0.5 * (a[1:] + a[:-1])[stiff > 0]
+    assert (d * d / (2 * np.pi * middle)).min() == pytest.approx(SOFT_LIMIT * SOFT["Y"] ** 3, rel=1e-5)
+
+
 @pytest.mark.parametrize("Gamma", [0.02, 0.2])
 @pytest.mark.parametrize("V", [0.1, 1.0, 10.0])
 def test_an_impact_gives_back_the_quadrature_of_its_opening(Gamma, V):

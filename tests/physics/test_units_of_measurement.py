@@ -13,6 +13,7 @@ import pytest
 import oblique
 from epdem.theory import adhesion, pair, partial_slip, printed, restitution, timestep, waves, yielding
 from epdem.theory.backbones import LAWS
+from epdem.theory.cavity_adhesive import CavityAdhesive
 from epdem.theory.thornton_ning import ThorntonNing
 
 ONE, KG, M, S = np.zeros(3), *np.eye(3)
@@ -92,6 +93,13 @@ def adhesive_impact(E_star, R_star, Gamma, p_y, m_star, speed):
     return [x.e_n, x.contact_time, x.force_max, x.overlap_max, x.radius_max, x.plastic_work]
 
 
+def flattened(E_star, R_star, Gamma, Y, c_strain, a):
+    law = CavityAdhesive(E_star=E_star, R_star=R_star, Gamma=Gamma, Y=Y, c_strain=c_strain)
+    branch, dent = law.branch(a)
+    found = [law.force(a), law.overlap(a), law.work(a), law.largest_adhesion, dent, branch.pull_off_force]
+    return [*found, branch.energy(0.5 * a), branch.fold_radius]
+
+
 def split(E_star, R_star, p_y, m_star, speed, E, nu, density):
     both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
     return list(waves.energy_split(both, m_star=m_star, speed=speed, E=E, nu=nu, density=density).values())
@@ -151,6 +159,15 @@ ROWS = [
             f"adhesion[{G}]",
         )
         for G in (0.2, 2e3)
+    ),
+    *(
+        Row(
+            flattened,
+            CONTACT | {"Gamma": (2.0, PA + M), "Y": Y, "c_strain": (c, ONE), "a": (1e-3, M)},
+            [N, M, J, PA + M, M, N, J, M],
+            f"flattened[{c}]",
+        )
+        for c in (0.82, 1e6)
     ),
     Row(oblique.maw_barber_fawcett, {"psi_1": (2.0, ONE), "kappa": (0.8, ONE)}, ONE),
     Row(yielding.yield_speed, IMPACT | {"p_y": P}, SPEED),

@@ -112,9 +112,20 @@ struct Cavity {
     return max(constant<T>(least_area), 1.0 - cut * max(T{}, delta / R_star - yield_ratio()));
   }
 
-  /// 1 - f(s) of finite strain, from ln a/a_Y.
+  /// The overlap from which on the area is the least one; infinite without finite strain.
+  T least_overlap(T R_star) const noexcept { return elastic_overlap(R_star) + (1.0 - least_area) * R_star / cut; }
+
+  /// d ln a/d ln alpha beyond yield.
+  T widening(T R_star, T delta) const noexcept {
+    const T rate = select(delta < plastic_ratio * R_star, 0.5 * (1.0 + beta), T{} + 0.5);
+    const T left = 1.0 - cut * (delta / R_star - yield_ratio());
+    return rate - select(left > least_area, 0.5 * cut * delta / (R_star * max(left, T{} + least_area)), T{});
+  }
+
+  /// 1 - f(s) of finite strain, from ln a/a_Y; f stays above 0.
   T fallen(T log_a) const noexcept {
-    return exponential<T>(max(constant<T>(-700.0), -c_yield * exponential<T>(-0.7 * log_a)));
+    const T power = -c_yield * exponential<T>(-0.7 * log_a);
+    return exponential<T>(min(constant<T>(-1e-14), max(constant<T>(-700.0), power)));
   }
 
   /// The backbone without finite strain, and ln a/a_Y where it is needed.
@@ -197,9 +208,17 @@ struct Cavity {
     return half * sum;
   }
 
-  /// What the fall of the pressure and of the area takes off the work between two overlaps of one phase; Gauss's rule
-  /// in ln alpha.
+  /// What the fall of the pressure and of the area takes off the work between two overlaps of one phase.
   T fallen_work(T R_star, T low, T high) const noexcept {
+    return sum_in_log(low, high, [&](T delta) {
+      const SmallStrain now = small_strain(R_star, delta);
+      return now.point.force * (1.0 - area_left(R_star, delta) * (1.0 - fallen(now.log_a))) * delta;
+    });
+  }
+
+  /// The integral of f(alpha) d ln alpha; Gauss's rule.
+  template <class F>
+  static T sum_in_log(T low, T high, F f) noexcept {
     constexpr double node[] = {0.005299532504175031, 0.0277124884633837, 0.06718439880608412, 0.1222977958224985,
                                0.19106187779867811,  0.2709916111713863, 0.35919822461037054, 0.4524937450811813,
                                0.5475062549188188,   0.6408017753896295, 0.7290083888286136,  0.8089381222013219,
@@ -211,12 +230,7 @@ struct Cavity {
         0.062314485627767036, 0.0475792558412463,   0.031126761969323728, 0.013576229705877088};
     const T range = logarithm(high / low);
     T sum{};
-    for (int k = 0; k < 16; ++k) {
-      const T delta = low * exponential<T>(node[k] * range);
-      const SmallStrain now = small_strain(R_star, delta);
-      const T left = area_left(R_star, delta) * (1.0 - fallen(now.log_a));
-      sum = sum + weight[k] * (now.point.force * (1.0 - left) * delta);
-    }
+    for (int k = 0; k < 16; ++k) sum = sum + weight[k] * f(low * exponential<T>(node[k] * range));
     return range * sum;
   }
 };

@@ -93,7 +93,8 @@ struct FlattenedOpening {
 /// `cavity` with adhesion: a punch in tension superposed on each contact, F = F_b - 2 E* a d, alpha = alpha_b - d, d =
 /// sqrt(2 pi Gamma a/E*), of Cavity's force F_b and overlap alpha_b while it grows and of eq. 8.82 below (this
 /// project's own composition). JKR's contact before yield; a JKR contact of R' = 4 E* a0^3/(3 b F0), b = 1 - tau + 4
-/// tau/(3 pi), near its end. Growth creates no energy up to largest_adhesion; hosts refuse more. Gamma = 0 is `cavity`.
+/// tau/(3 pi), near its end. Growth creates no energy up to largest_adhesion; hosts refuse more. Gamma = 0 is `cavity`,
+/// finite_strain that of its F_b and a.
 template <class T = double>
 struct CavityAdhesive {
   using number = T;
@@ -101,7 +102,7 @@ struct CavityAdhesive {
   static constexpr int id = 47;  // of a LIGGGHTS model: restart files keep it, it never changes
   static constexpr const char* title = "elastic, expanding cavity, fully plastic, with adhesion";
   static constexpr const char* sources = "Johnson 1985; Mesarovic and Johnson 2000; Johnson, Kendall and Roberts 1971";
-  static constexpr const char* condition = "plastic_ratio > first_yield_ratio, ln s_P > 0, no energy created at yield";
+  static constexpr const char* condition = Cavity<T>::condition;
   static constexpr const char* without_adhesion = "cavity";  // the law of the same bodies with Gamma = 0
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
@@ -109,8 +110,9 @@ struct CavityAdhesive {
       {"work_of_adhesion", "workOfAdhesion", "Gamma", "J/m^2", not_given, true, true},
       {"yield_stress", "yieldStress", "Y", "Pa", not_given},
       {"first_yield_ratio", "firstYieldRatio", "c_Y", "1", 1.60},
-      {"plastic_ratio", "plasticRatio", "c_P", "1", 2.8}};
-  static constexpr int n_parameters = 4;
+      {"plastic_ratio", "plasticRatio", "c_P", "1", 2.8},
+      {"finite_strain", "finiteStrain", "c_strain", "1", no_finite_strain}};
+  static constexpr int n_parameters = 5;
   static constexpr int strength = 1;
   static constexpr double default_ratio = 1.0;
   static constexpr bool strength_by_ratio = false;
@@ -132,20 +134,19 @@ struct CavityAdhesive {
   T pull{};  // pi Gamma
   Cavity<T> body{};
 
-  static double hardening(const double* parameter) noexcept { return parameter[3] / parameter[2]; }
+  static double hardening(const double* parameter) noexcept { return Cavity<T>::hardening(parameter + 1); }
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const T* parameter) noexcept {
-    const T of_body[] = {parameter[1], parameter[2], parameter[3], T{} + no_finite_strain};
-    return Cavity<T>::valid(of_body);
-  }
+  static bool valid(const T* parameter) noexcept { return Cavity<T>::valid(parameter + 1); }
 
   CavityAdhesive() = default;
   CavityAdhesive(T E_star_, const T* parameter) noexcept : E_star(E_star_), pull(pi * parameter[0]) {
     c = sqrt(2.0 * pull / E_star);
-    const T of_body[] = {parameter[1], parameter[2], parameter[3], T{} + no_finite_strain};
-    body = Cavity<T>(E_star, of_body);
+    body = Cavity<T>(E_star, parameter + 1);
   }
+
+  void confine(T share) noexcept { body.confine(share); }
+  auto softens() const noexcept { return body.softens(); }
 
   /// d [m] of a radius.
   T opening(T radius) const noexcept { return c * sqrt(radius); }
@@ -155,8 +156,19 @@ struct CavityAdhesive {
   T yield_overlap(T R_star) const noexcept { return body.elastic_overlap(R_star) - opening(body.a_ratio * R_star); }
 
   /// alpha_b [m] of a growing contact at `delta` beyond yield: alpha_b - d = delta. Fully plastic it is JKR's curve of
-  /// 2 R*, which bounds the overlap of the phase before from above: there three steps of Halley's method.
+  /// 2 R*, which bounds the overlap of the phase before from above: there three steps of Halley's method. Finite strain
+  /// lowers alpha_b, by little: Newton's method on a concave d.
   T backbone_overlap(T R_star, T delta) const noexcept {
+    T b = small_strain_overlap(R_star, delta);
+    if (!any(softens())) return b;
+    for (int i = 0; i < 5; ++i) {
+      const T d = opening(body.load(R_star, b).radius);
+      b = max(b - (b - d - delta) / (1.0 - 0.5 * d / b * body.widening(R_star, b)), body.elastic_overlap(R_star));
+    }
+    return b;
+  }
+
+  T small_strain_overlap(T R_star, T delta) const noexcept {
     const T R = 2.0 * R_star, y = adhesive::curve(adhesive::fold_share * cbrt(c * R), R * delta);
     const T wide = y * y * (y * y) / R, delta_P = body.plastic_ratio * R_star;
     const auto middle = delta < delta_P - opening(sqrt(R * delta_P));
@@ -173,6 +185,7 @@ struct CavityAdhesive {
 
   /// The integral of d (2 E* a d alpha_b - dF_b) from yield to alpha_b >= alpha_Y [J].
   T mismatch(T R_star, T overlap) const noexcept {
+    if (any(softens())) return mismatch_by_quadrature(R_star, overlap);
     const T q = 0.5 * (1.0 + body.beta), n = 2.5 * q, m = 1.5 * q + 1.0, A = 2.0 / 3.0 * body.c_Y, B = 2.0 / 3.0 * q;
     const T delta_Y = body.elastic_overlap(R_star), delta_P = body.plastic_ratio * R_star;
     const T a_Y = body.a_ratio * R_star, a_P = sqrt(2.0 * R_star * delta_P), y_Y = sqrt(a_Y);
@@ -185,9 +198,36 @@ struct CavityAdhesive {
     return c * (y_Y * middle + select(overlap > delta_P, above, T{}));
   }
 
+  /// The same in parts, -d F_b and the integral of 2 E* a d + F_b d', by Gauss's rule in ln alpha_b between the kinks.
+  T mismatch_by_quadrature(T R_star, T overlap) const noexcept {
+    const T delta_Y = body.elastic_overlap(R_star), P = body.plastic_ratio * R_star, L = body.least_overlap(R_star);
+    const auto slope = [&](T b) { return b * mismatch_slope(R_star, b, body.load(R_star, b)); };
+    const T middle = min(overlap, min(P, L)), upper = max(middle, min(overlap, max(P, L)));
+    T sum = body.sum_in_log(delta_Y, middle, slope);
+    if (any(upper > middle)) sum = sum + body.sum_in_log(middle, upper, slope);
+    if (any(overlap > upper)) sum = sum + body.sum_in_log(upper, max(overlap, upper), slope);
+    const Point<T> first = body.load(R_star, delta_Y), last = body.load(R_star, overlap);
+    return opening(first.radius) * first.force - opening(last.radius) * last.force + sum;
+  }
+
   /// W_b - U - mismatch [J] of a peak at alpha_b: what its growth since yield has taken for good.
   T lost(T R_star, T overlap, const Point<T>& peak) const noexcept {
     return body.work(R_star, overlap) - recovered_work(E_star, peak) - mismatch(R_star, overlap);
+  }
+
+  /// 2 E* a d + F_b d' of its quadrature.
+  T mismatch_slope(T R_star, T overlap, const Point<T>& now) const noexcept {
+    return opening(now.radius) *
+           (2.0 * E_star * now.radius + 0.5 * now.force * body.widening(R_star, overlap) / overlap);
+  }
+
+  /// The increase of lost between near peaks of one phase, by Simpson's rule.
+  T lost_between(T R_star, T from, T to, const Point<T>& first, const Point<T>& last) const noexcept {
+    const T middle = 0.5 * (from + to), sixth = (to - from) / 6.0;
+    const Point<T> now = body.load(R_star, middle);
+    const auto yields = [&](T b, const Point<T>& p) { return p.force - mismatch_slope(R_star, b, p); };
+    const auto rest = [&](const Point<T>& p) { return opening(p.radius) * p.force - recovered_work(E_star, p); };
+    return sixth * (yields(from, first) + 4.0 * yields(middle, now) + yields(to, last)) + rest(last) - rest(first);
   }
 
   /// Elastic and surface energy [J] at a peak.
@@ -305,7 +345,7 @@ inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
       bend = select(dented, opening.bend(z_f), bend);
       scale = select(dented, zero + 1.0, scale);
     }
-    jump = select(ends, on_parting(F_f, bend, scale, fold - own, closing), jump);
+    jump = select(ends & (law.pull > 0.0), on_parting(F_f, bend, scale, fold - own, closing), jump);
   }
   const auto keeps = stands | (delta > 0.0);
   return {select(stands, F, zero) + jump,
@@ -329,6 +369,25 @@ inline T plastic_work(const CavityAdhesive<T>& law, T R_star, const typename Cav
     lost = select(at_once, lost - law.lost(R_star, touch, law.body.load(R_star, touch)), lost);
   }
   return select(dented, max(lost, T{}), T{});
+}
+
+/// Work lost by yield in a step that grows [J].
+template <class T>
+inline T plastic_work_of_step(const CavityAdhesive<T>& law, T R_star, const typename CavityAdhesive<T>::State& before,
+                              const typename CavityAdhesive<T>::State& after) noexcept {
+  const auto grows = after.delta_max > before.delta_max;
+  if (!any(law.softens()) || !any(grows)) return adhesive::plastic_work_of_step(law, R_star, before, after);
+  const auto dented = grows & detail::has_dent(law, before);
+  const Point<T> safe = law.body.load(R_star, R_star), first = select(dented, before.point, safe);
+  const Point<T> last = select(dented, after.point, safe);
+  const T from = select(dented, before.delta_max + law.opening(first.radius), R_star);
+  const T to = select(dented, after.delta_max + law.opening(last.radius), R_star);
+  const T P = law.body.plastic_ratio * R_star, L = law.body.least_overlap(R_star);
+  const auto near = dented & (to < 1.02 * from) & ((from >= P) | (to <= P)) & ((from >= L) | (to <= L));
+  T lost{};
+  if (any(near)) lost = select(near, law.lost_between(R_star, from, to, first, last), lost);
+  if (any(grows & !near)) lost = select(near, lost, adhesive::plastic_work_of_step(law, R_star, before, after));
+  return lost;
 }
 
 /// Energies that a step took for good.
@@ -360,7 +419,7 @@ inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
     }
     adhesive = select(ends, E, adhesive);
   }
-  return {plastic_work_of_step(law, R_star, before, after), adhesive};
+  return {epdem::plastic_work_of_step(law, R_star, before, after), adhesive};
 }
 
 /// Elastic and surface energy [J] of a contact at overlap `delta` <= delta_max, 0 for bodies apart.
@@ -380,15 +439,18 @@ inline T stored_energy(const CavityAdhesive<T>& law, T R_star, const typename Ca
 }
 
 /// Of `cavity_adhesive`: d (2 E* a - dF_b/d alpha_b) must not exceed d(W_b - U)/d alpha_b at any overlap beyond yield.
-/// Found in each phase apart, finer and finer around the least value, with central differences.
+/// Found in each phase apart, finer and finer around the least value, with central differences. Finite strain is that
+/// of a sphere on a rigid plane, the largest one, up to its least area.
 inline double largest_adhesion(const CavityAdhesive<double>& law, double R_star) noexcept {
   constexpr int parts = 16, rounds = 8;
   constexpr double h = 1e-5;  // of ln alpha_b
-  const double delta_Y = law.body.elastic_overlap(R_star), infinite = std::numeric_limits<double>::infinity();
+  Cavity<double> body = law.body;
+  if (body.softens()) body.confine(0.5 * sqrt(0.5 / body.cut));
+  const double delta_Y = body.elastic_overlap(R_star), infinite = std::numeric_limits<double>::infinity();
+  const double end = std::fmin(body.log_s_P + 10.0, std::log(body.least_overlap(R_star) / delta_Y));
   const auto at = [&](double log_s) {
     const double b = delta_Y * exp(log_s), left = b * exp(-h), right = b * exp(h);
-    const Point<double> now = law.body.load(R_star, b), low = law.body.load(R_star, left),
-                        high = law.body.load(R_star, right);
+    const Point<double> now = body.load(R_star, b), low = body.load(R_star, left), high = body.load(R_star, right);
     const double dF = (high.force - low.force) / (right - left);
     const double dU = (recovered_work(law.E_star, high) - recovered_work(law.E_star, low)) / (right - left);
     const double stiff = 2.0 * law.E_star * now.radius - dF, spare = max(0.0, now.force - dU);
@@ -396,7 +458,8 @@ inline double largest_adhesion(const CavityAdhesive<double>& law, double R_star)
   };
   double least = infinite;
   for (int phase = 0; phase < 2; ++phase) {
-    const double first = h + (phase ? law.body.log_s_P : 0.0), last = law.body.log_s_P + (phase ? 10.0 : -h);
+    const double first = h + (phase ? body.log_s_P : 0.0), last = phase ? end : std::fmin(body.log_s_P, end) - h;
+    if (last < first) continue;
     double low = first, high = last;
     for (int round = 0; round < rounds; ++round) {
       const double width = (high - low) / parts;

@@ -72,23 +72,23 @@ class LawSpec:
         Raises ValueError for parameters that make no sense together.
         """
         if self.adheres:
-            return self.adhesive(E_star=E_star, R_star=R_star)
+            return self.adhesive(E_star=E_star, R_star=R_star, radius=radius)
         return self.backbone(E_star=E_star, R_star=R_star, radius=radius)
 
     def backbone(self, *, E_star: float, R_star: Real, radius: Real) -> Backbone:
         """`theory` of a law without adhesion. Raises KeyError for another one."""
         law = LAWS[self.name]
-        share = {"share": self.curvature_share(R_star, radius)} if law.uses_share else {}
-        return law(E_star=E_star, R_star=R_star, **self._numbers, **share)
+        return law(E_star=E_star, R_star=R_star, **self._numbers(law.uses_share, R_star, radius))
 
-    def adhesive(self, *, E_star: float, R_star: Real) -> JKR:
+    def adhesive(self, *, E_star: float, R_star: Real, radius: Real) -> JKR:
         """`theory` of a law with adhesion. Raises KeyError for another one."""
-        return ADHESIVE[self.name](E_star=E_star, R_star=R_star, **self._numbers)
+        law = ADHESIVE[self.name]
+        return law(E_star=E_star, R_star=R_star, **self._numbers(law.uses_share, R_star, radius))
 
-    @property
-    def _numbers(self) -> dict[str, Any]:
+    def _numbers(self, uses_share: bool, R_star: Real, radius: Real) -> dict[str, Any]:
         symbols = find_law(self.name).symbols
-        return {symbols[name]: x for name, x in self.parameters.items()}
+        share = {"share": self.curvature_share(R_star, radius)} if uses_share else {}
+        return {symbols[name]: x for name, x in self.parameters.items()} | share
 
     def of(self, body: float, target: float) -> "LawSpec":
         """The same law for two bodies of these strengths [Pa]."""

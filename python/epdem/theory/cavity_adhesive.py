@@ -4,10 +4,10 @@
 import numpy as np
 
 from .adhesive_curve import AdhesiveCurve, Numbers, Path
-from .cavity import Cavity
+from .cavity import LEAST_AREA, STRAIN_EXPONENT, Cavity
 from .flattened import Flattened
 from .jkr import JKR
-from .numerics import Array, bisect
+from .numerics import Array, bisect, gauss
 
 
 class CavityAdhesive(JKR):
@@ -15,10 +15,11 @@ class CavityAdhesive(JKR):
 
     This project's own composition: below first yield it is JKR's contact; it opens as `Flattened` says. Gamma = 0 is
     `cavity`. In a step of loading the dent loses d(W_b - U) - d (2 E* a d alpha_b - dF_b), U the elastic energy of the
-    peak: ValueError beyond `largest_adhesion`, where this would create energy. Y, c_Y, c_P as in Cavity.
+    peak: ValueError beyond `largest_adhesion`, where this would create energy. The other parameters as in Cavity.
     """
 
     name = "cavity_adhesive"
+    uses_share = True
     path_nodes = 32
 
     def __init__(
@@ -30,12 +31,15 @@ class CavityAdhesive(JKR):
         Y: Numbers,
         c_Y: Numbers | None = None,
         c_P: Numbers | None = None,
+        c_strain: Numbers | None = None,
+        share: Numbers = 1.0,
     ) -> None:
         super().__init__(E_star=E_star, R_star=R_star, Gamma=Gamma)
-        self.Y, self.c_Y, self.c_P = self.read_parameters(Y=Y, c_Y=c_Y, c_P=c_P)
-        self.backbone = b = Cavity(E_star=E_star, R_star=R_star, Y=self.Y, c_Y=self.c_Y, c_P=self.c_P)
+        b = Cavity(E_star=E_star, R_star=R_star, Y=Y, c_Y=c_Y, c_P=c_P, c_strain=c_strain, share=share)
+        self.backbone, self.Y, self.c_Y, self.c_P, self.c_strain = b, b.Y, b.c_Y, b.c_P, b.c_strain
         self.yield_radius = b.a_Y
-        self.plastic_radius = np.sqrt(2 * self.R_star * b.plastic_overlap)
+        self.plastic_radius = np.sqrt(2 * self.R_star * b.plastic_overlap)  # without finite strain
+        self.kinks = [b.radius(at) for at in b.kinks()] if b.softens else [self.yield_radius, self.plastic_radius]
         self.exponent = (1 + b.beta) / 2  # of a in alpha between yield and full plasticity
         if np.any(self.largest_adhesion < self.Gamma):
             at = np.argmin(np.broadcast_to(self.largest_adhesion / np.maximum(self.Gamma, 1e-300), np.shape(R_star)))
@@ -49,10 +53,14 @@ class CavityAdhesive(JKR):
     @property
     def largest_adhesion(self) -> Numbers:
         """Work of adhesion [J/m^2] up to which growth creates no energy: E* a_Y^3/(2 pi R*^2) times the least of
-        (D/K)^2 a_Y/a, D = d(W_b - U)/d alpha_b in pi a_Y^2 Y, K = 2 E* a - dF_b/d alpha_b in pi R* Y, where K > 0."""
-        c_Y, c_P = (np.ravel(np.asarray(x, float)) for x in np.broadcast_arrays(self.c_Y, self.c_P))
-        least = np.array([_least_ratio(y, p) for y, p in zip(c_Y, c_P, strict=True)])
-        shaped = np.reshape(least, np.broadcast_shapes(np.shape(self.c_Y), np.shape(self.c_P)))
+        (D/K)^2 a_Y/a, D = d(W_b - U)/d alpha_b in pi a_Y^2 Y, K = 2 E* a - dF_b/d alpha_b in pi R* Y, where K > 0.
+
+        Finite strain is that of share = 1, the largest one, up to its least area."""
+        numbers = np.broadcast_arrays(self.c_Y, self.c_P, self.c_strain, self.yield_radius / self.R_star)
+        kept = numbers if self.backbone.softens else [*numbers[:3], np.zeros(np.shape(numbers[3]))]
+        sets, place = np.unique(np.reshape(kept, (4, -1)), axis=1, return_inverse=True)
+        least = np.array([_least_ratio(*one) for one in sets.T])[np.ravel(place)]
+        shaped = np.reshape(least, np.shape(numbers[0]))
         return shaped * self.E_star * self.yield_radius**3 / (2 * np.pi * self.R_star**2)
 
     # --- the growing contact, by contact radius
@@ -61,7 +69,30 @@ class CavityAdhesive(JKR):
         """alpha_b [m], the inverse of the radius of `Cavity`."""
         a, R, b = np.asarray(a, float), self.R_star, self.backbone
         middle = b.yield_overlap * np.maximum(a / self.yield_radius, 1.0) ** (1 / self.exponent)
+        if b.softens:
+            return np.where(a <= self.yield_radius, a * a / R, self._softened_overlap(a, middle))
         return np.where(a <= self.yield_radius, a * a / R, np.where(a < self.plastic_radius, middle, a * a / (2 * R)))
+
+    def _softened_overlap(self, a: Array, middle: Array) -> Array:
+        """The same beyond yield, by Newton's method on ln a from the overlap without finite strain, which is below."""
+        at = np.maximum(np.minimum(middle, a * a / (2 * self.R_star)), self.backbone.yield_overlap)
+        for _ in range(60):
+            step = np.log(np.maximum(a, self.yield_radius) / self.backbone.radius(at)) / self._rate(at)
+            at = at * np.exp(step)
+            if not np.any(np.abs(step) > 1e-15):
+                break
+        return np.asarray(at)
+
+    def _rate(self, alpha_b: Numbers) -> Numbers:
+        """d ln a/d ln alpha_b of `Cavity`."""
+        b = self.backbone
+        between = (alpha_b > b.yield_overlap) & (alpha_b < b.plastic_overlap)
+        rate = np.where(between, self.exponent, 0.5)
+        if not b.softens:
+            return rate
+        falls = (alpha_b > b.yield_overlap) & (alpha_b < b.least_overlap)
+        left = 1 - b.cut * np.maximum(np.minimum(alpha_b, b.least_overlap) - b.yield_overlap, 0.0) / self.R_star
+        return rate - np.where(falls, b.cut * alpha_b / (2 * self.R_star * left), 0.0)
 
     def overlap(self, a: Numbers) -> Numbers:
         return self.backbone_overlap(a) - self.c * np.sqrt(a)
@@ -70,9 +101,8 @@ class CavityAdhesive(JKR):
         return self.backbone.force(self.backbone_overlap(a)) - self.adhesive_load(a)
 
     def slope(self, y: Numbers) -> Numbers:
-        a = y * y
-        between = (a > self.yield_radius) & (a < self.plastic_radius)
-        return np.where(between, 2 / self.exponent, 4.0) * self.backbone_overlap(a) / y - self.c
+        at = self.backbone_overlap(y * y)
+        return 2 / self._rate(at) * at / y - self.c
 
     def work(self, a: Numbers) -> Numbers:
         return self._potential(a) - self._potential(self.touch_radius)
@@ -84,7 +114,9 @@ class CavityAdhesive(JKR):
         return b.work(at) - b.force(at) * d + np.pi * self.Gamma * a * a - self._mismatch(a)
 
     def _mismatch(self, a: Numbers) -> Numbers:
-        """The integral of d (2 E* a d alpha_b - dF_b) from yield to `a` [J], in closed form."""
+        """The integral of d (2 E* a d alpha_b - dF_b) from yield to `a` [J], in closed form without finite strain."""
+        if self.backbone.softens:
+            return self._mismatch_by_quadrature(self.backbone_overlap(a))
         b, E, R, q = self.backbone, self.E_star, self.R_star, self.exponent
         a_Y, a_P = self.yield_radius, self.plastic_radius
         log = np.log(np.clip(a, a_Y, a_P) / a_Y) / q  # ln s
@@ -96,6 +128,22 @@ class CavityAdhesive(JKR):
         x = np.maximum(a, a_P)
         above = 4 * E / (7 * R) * (x**3.5 - a_P**3.5) - 0.8 * np.pi * b.c_P * b.Y * (x**2.5 - a_P**2.5)
         return self.c * (middle + above)
+
+    def _mismatch_by_quadrature(self, top: Array) -> Array:
+        """The same, -d F_b and the integral of 2 E* a d + F_b dd/d alpha_b, in ln alpha_b between the kinks."""
+        b, first = self.backbone, self.backbone.yield_overlap
+        top, (x, w) = np.maximum(top, first), gauss(40)
+
+        def opening(at: Numbers) -> Array:
+            return np.asarray(self.c * np.sqrt(b.radius(at)))
+
+        total = opening(first) * b.force(first) - opening(top) * b.force(top)
+        for low, high in zip(b.kinks(), [*b.kinks()[1:], np.inf], strict=True):
+            log = np.log(np.clip(top, low, high) / low)
+            at = low * np.exp(np.multiply.outer(x, log))
+            power = opening(at) * (2 * self.E_star * b.radius(at) * at + 0.5 * b.force(at) * self._rate(at))
+            total = total + log * np.tensordot(w, power, 1)
+        return np.asarray(total)
 
     def radius(self, alpha: Numbers) -> Numbers:
         """Contact radius a [m] of a contact that has grown up to the overlap alpha [m]; 0 below the fold of JKR."""
@@ -125,14 +173,11 @@ class CavityAdhesive(JKR):
 
     def loading_paths(self, top: Numbers) -> list[tuple[Path, Numbers]]:
         first, top = self.touch_radius, np.asarray(top, float)
-        ends = [np.clip(x, first, np.maximum(top, first)) for x in (self.yield_radius, self.plastic_radius)]
-        last = np.maximum(top, ends[1])
+        ends = [np.clip(x, first, np.maximum(top, first)) for x in self.kinks]
+        ends.append(np.maximum(top, ends[-1]))
         elastic = AdhesiveCurve(E_star=self.E_star, R_star=self.R_star, Gamma=self.Gamma)
-        return [
-            (elastic.elastic_path(first, ends[0]), ends[0]),
-            (self._path(*ends), ends[1]),
-            (self._path(ends[1], last), last),
-        ]
+        grown = [(self._path(low, high), high) for low, high in zip(ends[:-1], ends[1:], strict=True)]
+        return [(elastic.elastic_path(first, ends[0]), ends[0]), *grown]
 
     def _path(self, low: Numbers, high: Numbers) -> Path:
         """As `elastic_path`, on the growing curve within one phase, ln a going straight."""
@@ -151,16 +196,26 @@ class CavityAdhesive(JKR):
         return [*super().caveats(m_star=m_star, speed=speed), *self.backbone.caveats(m_star=m_star, speed=speed)]
 
 
-def _ratio(log: Array, c_Y: float, c_P: float, ln_s_P: float) -> Array:
-    """(D/K)^2 a_Y/a of `largest_adhesion` at ln s > 0."""
+def _ratio(log: Array, c_Y: float, c_P: float, c_strain: float, a_Y: float) -> Array:
+    """(D/K)^2 a_Y/a of `largest_adhesion` at ln s > 0; a_Y in R*, 0 without finite strain."""
+    ln_s_P = _ln_s_P(c_Y, c_P)
     q = (1 + np.log(2) / ln_s_P) / 2
     full = log >= ln_s_P
     s, tau = np.exp(log), np.minimum(log / ln_s_P, 1.0)
     p = np.where(full, c_P, 2 / 3 * c_Y + 2 / 3 * q * np.minimum(log, ln_s_P))  # p_m/Y
     a = np.where(full, np.sqrt(2 * s), s**q)  # in a_Y
     rate = np.where(full, 0.5, q)  # d ln a/d ln s
-    F = a * a * p
-    dF = (2 * rate * F + np.where(full, 0.0, a * a * 2 / 3 * q)) / s
+    # area and pressure of finite strain and their slopes by ln s
+    kept, pressure, fall, weaker = np.ones_like(s), np.ones_like(s), np.zeros_like(s), np.zeros_like(s)
+    if a_Y > 0:
+        kept = 1 - 0.5 * a_Y**2 * (s - 1)
+        fall = -0.5 * a_Y**2 * s / kept
+        x, first = c_strain * (a_Y * a) ** -STRAIN_EXPONENT, c_strain * a_Y**-STRAIN_EXPONENT
+        pressure = np.expm1(-x) / np.expm1(-first)
+        weaker = -STRAIN_EXPONENT * rate * x * np.exp(-x) / -np.expm1(-x)
+    F = a * a * p * kept * pressure
+    dF = (F * (2 * rate + fall + weaker) + np.where(full, 0.0, a * a * kept * pressure * 2 / 3 * q)) / s
+    a, rate = a * np.sqrt(kept), rate + 0.5 * fall
     kappa = 0.3 * (1 - tau) ** 2 + 0.5625 * tau * (1 - tau) + 8 / (3 * np.pi**2) * tau**2
     bend = np.where(full, 0.0, (-0.6 * (1 - tau) + 0.5625 * (1 - 2 * tau) + 16 / (3 * np.pi**2) * tau) / ln_s_P)
     dU = 2 / c_Y * F / a * ((bend * F + 2 * kappa * s * dF - kappa * rate * F) / s)
@@ -169,14 +224,18 @@ def _ratio(log: Array, c_Y: float, c_P: float, ln_s_P: float) -> Array:
         return np.where(K > 0, (np.maximum(F - dU, 0.0) / K) ** 2 / a, np.inf)
 
 
-def _least_ratio(c_Y: float, c_P: float) -> float:
+def _ln_s_P(c_Y: float, c_P: float) -> float:
+    return float(3 * (c_P - 2 * c_Y / 3) - np.log(2))
+
+
+def _least_ratio(c_Y: float, c_P: float, c_strain: float, a_Y: float) -> float:
     """The least `_ratio` of all overlaps: in 2000 steps of each phase, then by halving the steps around it."""
-    ln_s_P = 3 * (c_P - 2 * c_Y / 3) - np.log(2)
-    least = np.inf
-    for low, high in ((1e-9, ln_s_P * (1 - 1e-12)), (ln_s_P, ln_s_P + 10)):
-        for _ in range(8):
+    ln_s_P, least = _ln_s_P(c_Y, c_P), np.inf
+    end = min(ln_s_P + 10, np.log1p(2 * (1 - LEAST_AREA) / a_Y**2)) if a_Y > 0 else ln_s_P + 10
+    for low, high in ((1e-9, min(ln_s_P * (1 - 1e-12), end)), (ln_s_P, end)):
+        for _ in range(8 * (high > low)):
             log = np.linspace(low, high, 2001)
-            ratio = _ratio(log, c_Y, c_P, ln_s_P)
+            ratio = _ratio(log, c_Y, c_P, c_strain, a_Y)
             k = int(np.argmin(ratio))
             least = min(least, float(ratio[k]))
             low, high = log[max(k - 2, 0)], log[min(k + 2, 2000)]

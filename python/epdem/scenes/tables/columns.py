@@ -283,7 +283,7 @@ def _lost_at_touch(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) 
     R_star, lost = reduced(first["radius"], second["radius"]), np.zeros(len(contacts))
     for (i, j), at in first.groupby([first["type"], second["type"]]).indices.items():
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
-        law = spec.adhesive(E_star=E_star, R_star=R_star[at])
+        law = spec.adhesive(E_star=E_star, R_star=R_star[at], radius=first["radius"].to_numpy()[at])
         lost[at] = -law.branch(law.touch_radius)[0].energy(law.touch_radius)
     return pd.Series(lost, contacts.index)
 
@@ -337,7 +337,8 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
     )
     largest = np.maximum(largest, overlap)
     if spec.adheres:
-        return _with_adhesion(spec.adhesive(E_star=E_star, R_star=R), overlap, largest, contacts["attached"].to_numpy())
+        adhesive = spec.adhesive(E_star=E_star, R_star=R, radius=radius)
+        return _with_adhesion(adhesive, overlap, largest, contacts["attached"].to_numpy())
     theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
     share = float(spec.curvature_share(R[0], radius[0]))
     law = Law(spec.name, E_star=E_star, share=share, **spec.parameters)
