@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
-from epdem.theory.numerics import Array, gauss
+from epdem.theory.numerics import Array, Real, gauss
 from epdem.theory.pair import curvature_share, strain_share
 
 Index: TypeAlias = NDArray[np.intp]
@@ -72,16 +72,45 @@ def stored_share(y: Array, tau: Array) -> Array:
     return np.asarray(most * np.tensordot(weights, force * slope, 1))
 
 
-def unload(law: Cavity, peak: Array, F: Array, way: Array, soft: Array) -> tuple[Array, Array]:
-    """Force [N] and elastic energy [J] at a way [m] below the peak overlap with the modulus E*/soft; F: peak force."""
+def unload(law: Cavity, peak: Array, F: Array, way: Array) -> Array:
+    """Force [N] at a way [m] below the peak overlap; F: peak force."""
+    share = F / law.force(peak)  # the way scales with the peak force
+    return np.asarray(share * law.unloading_force(peak - way / share, peak))
+
+
+def unloaded(law: Cavity, peak: Array, F: Array, way: Array) -> Array:
+    """Elastic energy [J] at a way [m] below the peak overlap; F: peak force."""
     a, tau = law.radius(peak), law.flatness(peak)
     A, B = 0.75 * (1 - tau), 2 / np.pi * tau
-    x = way / soft * law.E_star * a / F
+    x = way * law.E_star * a / F
     S = np.maximum(B + np.sqrt(B * B + 4 * A * x), 1e-300)
     y = np.clip(2 * x / S, 0.0, 1.0)
-    share = F / law.force(peak)  # the way scales with the peak force
-    force = share * law.unloading_force(peak - way / soft / share, peak)
-    return force, np.asarray(soft * F**2 / (law.E_star * a) * stored_share(y, tau))
+    return np.asarray(F**2 / (law.E_star * a) * stored_share(y, tau))
+
+
+class Kept(Cavity):
+    """A law that computes force, radius and flatness at one array of overlaps, `at`, once."""
+
+    at: Array | None = None
+
+    def _once(self, name: str, alpha: Real) -> Real:
+        if alpha is not self.at:
+            return getattr(super(), name)(alpha)
+        if name not in self._found:
+            self._found[name] = getattr(super(), name)(alpha)
+        return self._found[name]
+
+    def look(self, alpha: Array) -> None:
+        self.at, self._found = alpha, {}
+
+    def force(self, alpha: Real) -> Real:
+        return self._once("force", alpha)
+
+    def radius(self, alpha: Real) -> Real:
+        return self._once("radius", alpha)
+
+    def flatness(self, alpha: Real) -> Real:
+        return self._once("flatness", alpha)
 
 
 class Bed:
@@ -121,13 +150,13 @@ class Bed:
         self.full, self.lift = np.zeros(n + 1), np.ones(n + 1)  # N [J] and Q of each sphere
         self.pressure = np.zeros(n + 1)  # largest so far of each sphere [Pa], and 0 of planes
         self._near: Index = np.zeros(0, np.intp)
-        self._law: Cavity | None = None
+        self._law: Kept | None = None
 
-    def _law_of(self, near: Index) -> Cavity:
+    def _law_of(self, near: Index) -> Kept:
         if self._law is None or not np.array_equal(near, self._near):
             self._near, self._law = (
                 near,
-                Cavity(
+                Kept(
                     E_star=self.E_star[near],
                     R_star=self.R_star[near],
                     Y=self.Y[near],
@@ -211,6 +240,7 @@ class Bed:
             on = overlap[k] + v > 0.0
             touches = on if turn < 30 else touches & on  # one that ends in this step does not come back in it
             b = np.maximum(reached + v, 1e-12 * R)
+            law.look(b)
             yields = touches & (b > law.yield_overlap)
             m = np.where(yields, 1 - law.yield_overlap / b, 0.0)
             F = np.where(touches, self._peak_force(law, b, np.maximum(b - u, 0.0), m, pressure), 0.0)
@@ -226,8 +256,8 @@ class Bed:
             mean = np.where(F_before > 0, 0.5 * (F + F_before), F)
             q = self.shift[k] + np.where(yields, (unstored - self.unstored[k]) / np.where(yields, mean, 1.0), 0.0)
             way = np.maximum(reached + e - overlap[k], 0.0)
-            force, stored = unload(law, b, np.where(touches, F, 1.0), way, np.ones(len(k)))
-            force, before, e_before = np.where(touches, force, 0.0), pressure, e
+            force = np.where(touches, unload(law, b, np.where(touches, F, 1.0), way), 0.0)
+            before, e_before = pressure, e
             B_i, B_j = np.where(yields, c_i * back, 0.0), np.where(yields, c_j * back, 0.0)
             full = np.maximum(self.full, self._sum(k, B_i * F, B_j * F))
             full[-1] = 0.0
@@ -244,6 +274,7 @@ class Bed:
                 break
         else:
             raise ArithmeticError(f"growth of {np.max(np.abs(u + q - v) / R):.1e} R* per turn after {turn} turns")
+        stored = unloaded(law, b, np.where(touches, F, 1.0), way)
         after = {"force": force, "stored": stored, "grown": u, "shift": q, "unstored": unstored}
         after |= {"peak": b, "peak_force": F, "reached": reached, "retreat": e}
         for name, values in after.items():

@@ -25,50 +25,13 @@ def rebounds(wall, start, velocity, steps, law=FRICTION, more=""):
     return f"{head}{wall}{more}{walk}run {steps}\n{DUMP}"
 
 
-def test_a_box_of_1200_triangles_gives_the_rebounds_of_a_block(tmp_path):
-    """Three rebounds, with friction: position, velocity and spin."""
-    limits = (-0.03, 0.05, -0.04, 0.06, -0.05, 0.05)
-    faces = []
-    for face in (rectangle for k in range(0, 12, 2) for rectangle in [box(limits)[k]]):
-        corner, one, other = face[0], face[1] - face[0], face[2] - face[1]
-        faces += [[corner + a * one + b * other for a, b, _ in triangle] for triangle in tiles((0, 1), (0, 1), 10, 10)]
-    assert len(faces) == 1200
-    folder = written(tmp_path / "mesh", faces, "box")
-    region = f"region b block {' '.join(map(str, limits))} units box\nfix w all wall/ep/region b {HARD}\n"
-    words = ((0.0, 0.0, 0.0), "4.3 -3.1 -2.2", 60000, HARD)
-    out, (block,) = run(rebounds(region, *words), tmp_path / "block")
-    _, (mesh,) = run(rebounds(f"fix w all wall/ep mesh box.stl {HARD}\n", *words), folder)
-    touches = np.abs([column(out, f"f_w[{axis}]") for axis in (1, 2, 3)]).max(axis=0) > 0
-    assert np.count_nonzero(np.diff(touches.astype(int)) > 0) >= 3
-    for of in (slice(1, 4), slice(4, 7), slice(7, 10)):
-        assert np.abs(mesh[of] - block[of]).max() <= 1e-6 * np.abs(block[of]).max()
-
-
-def test_a_sphere_rolls_over_tiles_as_over_a_plane(tmp_path):
-    """It slides first, then rolls over 60 edges and corners."""
-    folder = written(tmp_path / "mesh", tiles((-0.06, 0.06), (-0.02, 0.02), 60, 20), "floor")
-    fall = "fix fall all gravity 9.81 vector 0 0 -1\n"
-    words = ((-0.05, 0.0, 0.99999 * R), "1 0.02 0", 60000, FRICTION, fall)
-    _, (plane,) = run(rebounds(f"fix w all wall/ep zplane 0 NULL {FRICTION}\n", *words), tmp_path / "plane")
-    out, (mesh,) = run(rebounds(f"fix w all wall/ep mesh floor.stl {FRICTION}\n", *words), folder)
-    assert mesh[1] > -0.01 and mesh[8] > 30 and (column(out, "f_w[3]")[1:] > 0).mean() > 0.5
-    for of in (slice(1, 4), slice(4, 7), slice(7, 10)):
-        assert np.abs(mesh[of] - plane[of]).max() <= 1e-6 * np.abs(plane[of]).max()
-
-
-def test_no_force_acts_past_a_ledge(tmp_path):
-    """A step: a sphere beside it falls from the height of its upper floor to the lower one; over the edge the force
-    points from the edge to the centre."""
+def test_over_an_edge_the_force_points_from_the_edge_to_the_centre(tmp_path):
+    """A sphere beside the upper floor of a step; boxes, tiles and ledges in this host: scenes/test_stl_bounds.py."""
     low = -0.035
     riser = [[(0, -0.05, 0), (0, 0.05, 0), (0, 0.05, low)], [(0, -0.05, 0), (0, 0.05, low), (0, -0.05, low)]]
-    step = [*tiles((-0.05, 0), (-0.05, 0.05), 3, 3), *riser, *tiles((0, 0.05), (-0.05, 0.05), 3, 3, low)]
-    written(tmp_path, step, "step")
-    wall = f"fix w all wall/ep mesh step.stl {FRICTION}\n"
-    out, ((_, x, _, z, *_),) = run(rebounds(wall, (1.001 * R, 0.0, 0.9 * R), "0 0 -1", 40000), tmp_path)
-    assert x == 1.001 * R and not column(out, "f_w[1]").any()
-    touching = np.flatnonzero(column(out, "f_w[3]"))
-    assert touching.size and 1e-5 * touching[0] == pytest.approx(0.9 * R - (low + R), abs=2e-5)
+    written(tmp_path, [*tiles((-0.05, 0), (-0.05, 0.05), 3, 3), *riser], "step")
     at = (0.6, 0.79)
+    wall = f"fix w all wall/ep mesh step.stl {FRICTION}\n"
     out, _ = run(rebounds(wall, (at[0] * R, 0.0, at[1] * R), "0 0 0", 0), tmp_path)
     force = np.array([column(out, f"f_w[{axis}]")[0] for axis in (1, 3)])
     assert force[0] > 0 and force[0] / force[1] == pytest.approx(at[0] / at[1], rel=1e-9)

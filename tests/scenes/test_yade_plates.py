@@ -3,10 +3,9 @@
 
 import math
 
-import numpy as np
 import pytest
-from parts_cases import bead, linear, mm, mps, parts, timed
-from scene_runs import in_hosts, ran
+from parts_cases import bead, mm, mps, parts, timed
+from scene_runs import ran
 from test_parts_motions import PLATE
 
 from epdem.case.scene import parse
@@ -67,28 +66,6 @@ def test_a_frictionless_sphere_slides_over_the_diagonal(tmp_path):
     assert particles["x"].iloc[0] < 0 < particles["x"].iloc[-1]
     assert particles["vx"].to_numpy() == pytest.approx(1.0, abs=1e-9)
     assert particles["z"].to_numpy() == pytest.approx(z * 1e-3, rel=1e-6)
-
-
-@pytest.mark.yade("module")
-@pytest.mark.liggghts
-def test_spheres_under_a_moving_plate_yield_as_in_liggghts(tmp_path):
-    """Two on the diagonal, two beside it, pressed between a plate that descends and the floor, then released."""
-    places = [(2.0, 2.0), (-4.0, -4.0), (5.0, -2.0), (-3.0, 6.0)]
-    bodies = [ball(f"b{n}", (x, y, 1.0)) for n, (x, y) in enumerate(places)]
-    floor = PLATE | {"name": "base", "center": mm(0, 0, 0)}
-    down, up = (linear("lid", 0, 0, v) for v in (-0.02, 0.02))
-    phases = [timed(n, "2 ms", move=[m]) for n, m in (("press", down), ("release", up))]
-    data = parts(wall=[floor, PLATE | {"center": mm(0, 0, 2)}], fill=[], body=bodies, phase=phases)
-    data["scene"]["gravity"] = "0 m/s^2"
-    data["output"] = {"rows": 10, "particles": 10, "energy": True, "loads": True}
-    data["numerics"] = {"time_step": "2e-6 s"}
-    ours, theirs = in_hosts(data, tmp_path, "yade", "liggghts")
-    force, other = (r.rows[["lid_force_z", "base_force_z"]].to_numpy() for r in (ours, theirs))
-    assert force == pytest.approx(other, abs=1e-6 * np.abs(other).max())
-    assert np.abs(other).max() > 4 * hertz(1e-6), "pressed"
-    columns = ["x", "y", "z", "vx", "vy", "vz"]
-    for one, two in zip(ours.particles[columns].T.to_numpy(), theirs.particles[columns].T.to_numpy(), strict=True):
-        assert one == pytest.approx(two, abs=1e-6 * max(1e-3, np.abs(two).max()))
 
 
 def test_walls_with_edges_between_triangles_are_named():
