@@ -29,8 +29,9 @@ HOSTS = ["embedded", "liggghts", "lammps", "yade"]
 OTHERS = {"liggghts-hertz": "LIGGGHTS's `hertz`", "lammps-hertz": "LAMMPS's `hertz/material`"}
 OTHERS |= {"lammps-mdr": "LAMMPS's `mdr`", "yade-mindlin": "YADE's Mindlin"}
 YIELDING = ["thornton", "cavity", "johnson"]  # of the bulk scenes
-WEAKER = "cavity_adhesive"  # hosts refuse the work of adhesion of the case for it
+WEAKER = "cavity_adhesive"  # the work of adhesion of the case is close to its limit
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000)
+TITLE = "Steel sphere on a steel wall"
 OUTPUT = {"rows": 400, "particles": 1, "energy": True, "loads": True}
 SHARES = (0.2, 0.1, 0.05, 0.025, 0.0125)  # of the stability limit, of the bed
 
@@ -142,7 +143,7 @@ def joined(plain: cost.Outcome, *others: cost.Outcome) -> cost.Outcome:
 
 
 def main() -> None:
-    """Run impacts and the bulk scenes; write tables, figure and page. --page: from the tables."""
+    """Run impacts and the bulk scenes; write tables, figure and page. --page: write figure and page from the tables."""
     if "--page" not in sys.argv:
         cases, laws = DOCS.parent / "cases", [name for name in LAWS]
         plain = cost.run(cases / "steel_wall.toml", engines=HOSTS, laws=laws, steps=STEPS, progress=print)
@@ -155,11 +156,11 @@ def main() -> None:
                 cost.run(path, engines=HOSTS, laws=laws, steps=STEPS, progress=print) for path, laws in of_path.items()
             ]
         outcome = joined(plain, *found)
-        save(chart(outcome), DOCS / "figures", data=False)
         bulk = convergence(YIELDING, scene_engine("liggghts"))
         for name, table in zip(NAMES, [*tables(outcome).values(), bulk, bed_convergence(YIELDING)], strict=True):
             store(name, table)
     errors, models, *scenes = map(load, NAMES)
+    save(chart(errors, TITLE), DOCS / "figures", data=False)
     parts = models["model"].str.partition(", ")
     ratios = pd.DataFrame({"engine": parts[0], "law": parts[2], "ratio": models["ratio_to_hertz"]})
     ratios[ratios["law"] != ""].to_csv(DOCS.parent / "data/step_times.csv", index=False, lineterminator="\n")

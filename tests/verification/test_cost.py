@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from epdem.engines import scene_engine
+from epdem.theory.backbones import ADHESIVE, LAWS
 from epdem.verification import cost, cost_report
 from epdem.verification.stability.bulk import convergence
 from scripts import script
@@ -71,8 +72,11 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
     assert json.dumps(embedded.models.to_dict("list"))
 
 
-def test_the_page_is_that_of_its_tables():
+def test_the_page_is_that_of_its_tables_and_each_law_has_a_line_of_its_own():
+    errors = page.load("cost")
     assert (page.DOCS / "cost.md").read_text() == page.document(*map(page.load, page.NAMES))
+    lines = [s for s in cost_report.chart(errors, "").panels[1].series if s.name in {*LAWS, *ADHESIVE}]
+    assert len({(s.colour, s.dash) for s in lines}) == len(lines) == len([*LAWS, *ADHESIVE])
 
 
 @pytest.mark.liggghts

@@ -45,7 +45,10 @@ def _study_page(title: str, sentence: str, parts: list[Part], *, passed: bool | 
 def of_cost(outcome: Cost, folder: Path) -> Path:
     """Write the page of error against run time."""
     _, *tables = cost_report.tables(outcome).items()
-    parts: list[Part] = [cost_report.chart(outcome), *(Rows(title, table) for title, table in tables)]
+    parts: list[Part] = [
+        cost_report.chart(outcome.rows, outcome.case.case.title),
+        *(Rows(title, table) for title, table in tables),
+    ]
     parts.append(Rows("Errors and times", outcome.rows, {"ns_per_impact": "ns"}))
     names, steps = ", ".join(outcome.models["model"]), outcome.rows["steps"].nunique()
     said = f"Error of e_n and stepping time of {names} at {steps} numbers of steps in contact."
