@@ -2,9 +2,10 @@
 """Scenes of the adhesive models in LIGGGHTS with the theory of their contacts: millimetre spheres that attract hard."""
 
 import numpy as np
-from plugin_decks import GAMMA, NU, P_Y, RHO, Bodies, E, deck_of, good, materials
+from plugin_decks import NU, P_Y, RHO, Bodies, E, Y, deck_of, gamma, good, materials
 
 from epdem.theory import adhesion
+from epdem.theory.cavity_adhesive import CavityAdhesive
 from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 
@@ -15,7 +16,9 @@ BOX = ((-0.05, 0.05), (-0.05, 0.05), (-0.02, 0.05))
 def theory(law, i=1, j=2, radius=R, other=np.inf):
     """The contact of two types and radii; a wall is of type 2."""
     E_star = 1 / ((1 - NU[i - 1] ** 2) / E[i - 1] + (1 - NU[j - 1] ** 2) / E[j - 1])
-    numbers = {"E_star": E_star, "R_star": 1 / (1 / radius + 1 / other), "Gamma": GAMMA[i - 1, j - 1]}
+    numbers = {"E_star": E_star, "R_star": 1 / (1 / radius + 1 / other), "Gamma": gamma(law)[i - 1, j - 1]}
+    if law == "cavity_adhesive":
+        return CavityAdhesive(**numbers, Y=min(Y[i - 1], Y[j - 1]))
     return JKR(**numbers) if law == "jkr" else ThorntonNing(**numbers, p_y=min(P_Y[i - 1], P_Y[j - 1]))
 
 

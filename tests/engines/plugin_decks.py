@@ -11,7 +11,7 @@ import numpy as np
 
 LAWS = ("hertz", "thornton", "johnson", "cavity", "meyer")
 YIELDING = LAWS[1:]
-ADHESIVE = ("jkr", "thornton_ning")
+ADHESIVE = ("jkr", "thornton_ning", "cavity_adhesive")
 
 # Three types of body: aluminium, steel, polymer (SI).
 E = np.array([70e9, 208e9, 5e9])
@@ -37,9 +37,14 @@ def per_pair(name, value, n=3):
     return f"fix {name} all property/global {name} peratomtypepair {n} {' '.join([repr(value)] * n * n)}\n"
 
 
+def gamma(law):
+    """GAMMA, of which cavity_adhesive holds less: 6.6 Y^3 R*/E*^2."""
+    return GAMMA / (200.0 if law == "cavity_adhesive" else 1.0)
+
+
 def adhesion(law):
     """The line of workOfAdhesion; nothing for a law without adhesion."""
-    values = " ".join(map(repr, GAMMA.ravel().tolist()))
+    values = " ".join(map(repr, gamma(law).ravel().tolist()))
     return f"fix gamma all property/global workOfAdhesion peratomtypepair 3 {values}\n" if law in ADHESIVE else ""
 
 

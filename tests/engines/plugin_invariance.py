@@ -131,7 +131,8 @@ class Suite:
             soft = {"m1": "7e7 2e8 5e6", "p1": "3e6 3e6 3e5", "p2": "1e6 1e6 1e5"}
             for fix, values in soft.items():
                 properties = re.sub(rf"(fix {fix} .* peratomtype) .*", rf"\1 {values}", properties)
-            properties = re.sub(r"(workOfAdhesion peratomtypepair 3) .*", r"\1" + 9 * " 0.5", properties)
+            work = " 0.05" if self.model == "ep/cavity_adhesive" else " 0.5"  # it refuses more between such bodies
+            properties = re.sub(r"(workOfAdhesion peratomtypepair 3) .*", r"\1" + 9 * work, properties)
         text = (
             head()
             + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify binsize 0.02\n{{neigh}}"

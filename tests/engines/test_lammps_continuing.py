@@ -109,7 +109,14 @@ thermo_modify format float %.17g
 """
 
 
-@pytest.mark.parametrize("law", [("cavity 1e8 0.3", "7e5", "4e5"), ("thornton_ning 1e8 0.3", "5 2e6", "3 1e6")])
+@pytest.mark.parametrize(
+    "law",
+    [
+        ("cavity 1e8 0.3", "7e5", "4e5"),
+        ("thornton_ning 1e8 0.3", "5 2e6", "3 1e6"),
+        ("cavity_adhesive 1e8 0.3", "0.05 7e5", "0.03 4e5"),
+    ],
+)
 def test_round_off_in_positions_between_two_runs_changes_no_force_of_new_types(law, tmp_path):
     """A contact that grows is at its largest overlap then; below, it keeps the force of its former types."""
     words, *strengths = law

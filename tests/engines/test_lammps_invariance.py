@@ -24,6 +24,11 @@ LAWS = {  # of the two materials
         "thornton_ning 2e8 0.25 0.3 2e5 {}",
         "tangential history 0.3 rolling epsd2 0.1",
     ),
+    "cavity_adhesive": (
+        "cavity_adhesive 1e8 0.3 0.005 4e5 {}",
+        "cavity_adhesive 2e8 0.25 0.003 3e5 {}",
+        "tangential history 0.3 rolling epsd2 0.1",
+    ),
 }
 DAMPED = "tangential history 0.3 tangential_restitution 0.6"
 WORDS = LAWS | {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""ep/jkr and ep/thornton_ning in LIGGGHTS against theory: sticking, meshes, contacts across a gap, energy."""
+"""The laws with adhesion in LIGGGHTS against theory: sticking, meshes, contacts across a gap, energy."""
 
 import re
 
@@ -70,7 +70,15 @@ def test_a_sphere_that_is_held_across_a_gap_slides_over_the_triangles_of_a_mesh(
 
 
 @pytest.mark.parametrize(
-    ("law", "share"), [("thornton_ning", -0.8), ("jkr", 20.0), thorough("jkr", -0.8), thorough("thornton_ning", 20.0)]
+    ("law", "share"),
+    [
+        ("thornton_ning", -0.8),
+        ("jkr", 20.0),
+        ("cavity_adhesive", -0.8),
+        thorough("jkr", -0.8),
+        thorough("thornton_ning", 20.0),
+        thorough("cavity_adhesive", 20.0),
+    ],
 )
 def test_a_pair_turned_through_one_revolution_keeps_its_force(tmp_path, law, share):
     """Held at an overlap of `share` gaps, over the borders of two ranks and of the periodic box."""
@@ -112,7 +120,7 @@ def test_the_energy_balance_closes_with_what_adhesion_takes(tmp_path, law):
     rows = books(tmp_path / "one", law, 20000)
     kinetic, plastic, elastic, adhesive = rows[:, 1:].T
     assert np.abs((kinetic + plastic + adhesive + elastic) / kinetic[0] - 1).max() < 1e-3
-    assert adhesive[-1] > 0.01 * kinetic[0]
+    assert adhesive[-1] > (1e-6 if law == "cavity_adhesive" else 0.01) * kinetic[0]  # which holds less adhesion
     assert plastic[-1] == 0 if law == "jkr" else plastic[-1] > 0.05 * kinetic[0]
     two = books(tmp_path / "two", law, 2000, ranks=2)
     assert np.allclose(rows[: len(two) - 1], two[:-1], rtol=1e-11, atol=1e-16)

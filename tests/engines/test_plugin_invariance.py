@@ -9,7 +9,7 @@ from plugin_invariance import Suite
 from marks import thorough
 
 OURS = (*LAWS, *ADHESIVE, "thornton ep/partial_slip_2", "cavity ep/partial_slip")
-PATHS = ("thornton", "jkr", "thornton_ning", "cavity ep/partial_slip")  # one law for each path of the code
+PATHS = ("thornton", *ADHESIVE, "cavity ep/partial_slip")  # one law for each path of the code
 every_law = pytest.mark.parametrize("law", [thorough(law, unless=law in PATHS) for law in OURS])
 pytestmark = pytest.mark.liggghts
 

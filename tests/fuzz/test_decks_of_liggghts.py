@@ -26,7 +26,11 @@ LAWS = {  # parameters of each type
     "jkr": [],
     "thornton_ning": ["yieldPressure"],
 }
-ADHESIVE = ("jkr", "thornton_ning")
+ADHESIVE = {  # their work of adhesion
+    "jkr": "workOfAdhesion",
+    "thornton_ning": "workOfAdhesion",
+    "cavity_adhesive": "workOfAdhesion low",
+}
 OF_TYPES = {
     "youngsModulus": (1e8, 2e8, 5e7),
     "poissonsRatio": (0.3, 0.25, 0.4),
@@ -37,6 +41,7 @@ OF_TYPES = {
 }
 OF_PAIRS = {
     "workOfAdhesion": (10.0, 2.0),
+    "workOfAdhesion low": (0.02, 0.005),
     "coefficientFriction": (0.3, 0.1),
     "coefficientRestitution": (0.6, 0.05),
     "coefficientRollingFriction": (0.05, 0.03),
@@ -51,6 +56,8 @@ COLUMNS = "id type radius x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy t
 def models(rng):
     """(law, words of the contact model, settings, parameters)."""
     law = rng.choice([*LAWS, "thornton", "cavity"])
+    if law == "thornton_ning":
+        law = rng.choice((law, "cavity_adhesive"))
     adheres = law in ADHESIVE
     friction = rng.choice(
         ["history"] * 4 + ["no_history", "off"] + ["ep/partial_slip", "ep/partial_slip_2"] * (not adheres)
@@ -64,8 +71,10 @@ def models(rng):
     chosen = [option for option in options if rng.random() < 0.15]
     if law == "cavity" and cohesion == "off" and rng.random() < 0.4:
         chosen.append("compaction on")
-    parameters = ["youngsModulus", "poissonsRatio", *LAWS[law], "coefficientFriction", "coefficientRestitution"]
-    parameters += ["finiteStrain"] * (law == "cavity" and rng.random() < 0.4) + ["workOfAdhesion"] * adheres
+    strengths = ["yieldStress"] if law == "cavity_adhesive" else LAWS[law]
+    parameters = ["youngsModulus", "poissonsRatio", *strengths, "coefficientFriction", "coefficientRestitution"]
+    parameters += ["finiteStrain"] * (law == "cavity" and rng.random() < 0.4)
+    parameters += [ADHESIVE[law]] if adheres else []
     parameters += ["coefficientRollingFriction"] * (rolling != "off")
     parameters += ["coefficientRollingViscousDamping"] * (rolling == "epsd")
     return law, words, chosen, parameters + ["cohesionEnergyDensity"] * (cohesion != "off")
@@ -80,7 +89,8 @@ def property_lines(parameters, types):
         else:
             value, spread = OF_PAIRS[name]
             table = " ".join(repr(value + spread * (i + j)) for i in range(types) for j in range(types))
-            yield f"fix {name} all property/global {name} peratomtypepair {types} {table}"
+            word = name.split()[0]
+            yield f"fix {word} all property/global {word} peratomtypepair {types} {table}"
 
 
 def draw(seed, more=(), steps=None):
