@@ -4,6 +4,7 @@
 import fcntl
 import os
 import shutil
+from functools import cache
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -85,6 +86,7 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.skip(reason="YADE_SOURCE names no source of YADE; its headers are needed"))
 
 
+@cache
 def missing(name):
     """Why an engine cannot run here, or None."""
     if name == "lammps":

@@ -13,8 +13,14 @@ from epdem.engines.liggghts import dump
 from epdem.scenes.plan.plan import plan
 from epdem.scenes.tables import results
 
-vtk = pytest.importorskip("vtk", reason="VTK is not installed; make test installs it")
-numpy_support = pytest.importorskip("vtk.util.numpy_support")
+
+@pytest.fixture(scope="module", autouse=True)
+def imported():
+    """VTK takes a second to import, which no other test needs."""
+    global vtk, numpy_support
+    vtk = pytest.importorskip("vtk", reason="VTK is not installed; make test installs it")
+    numpy_support = pytest.importorskip("vtk.util.numpy_support")
+
 
 LID = flat("lid", mm(0, 0, 18), mm(17, 17), stress=True)
 GATE = {"name": "gate", "kind": "plane", "axis": "z", "at": "20 mm", "material": "steel", "phases": ["fall"]}
