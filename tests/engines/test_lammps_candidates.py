@@ -31,6 +31,8 @@ WALLS = {
     f"fix w all wall/ep/region r {LAW}\n",
     "vibrating": f"variable z equal 0.004*sin(800*step*dt)\nregion r block -0.03 0.03 -0.03 0.03 -0.014 0.014 "
     f"move NULL NULL v_z\nfix w all wall/ep/region r {LAW}\n",
+    "as fast as the spheres": "variable z equal 0.002*sin(6000*step*dt)\n"
+    f"region r block -0.03 0.03 -0.03 0.03 -0.016 0.016 move NULL NULL v_z\nfix w all wall/ep/region r {LAW}\n",
     "turning": f"variable t equal 60*step*dt\nregion r block -0.014 0.014 -0.014 0.014 -0.014 0.014 "
     f"rotate v_t 0.002 0 0 0 0 1\nfix w all wall/ep/region r {LAW}\n",
     "triangles": f"fix w all wall/ep mesh box.stl {LAW}\n",

@@ -141,6 +141,17 @@ def test_a_restart_file_holds_all_contacts_of_the_rank_that_has_more(tmp_path):
     assert np.array_equal(plain, again)
 
 
+def test_a_contact_that_ends_where_a_restart_goes_on_begins_anew(tmp_path):
+    """A sphere jumps off a spring of friction in the first step and falls back within the same lists."""
+    motion = "fix motion top nve/sphere\ntimestep 2e-6\n"
+    press = spheres((0, 0, 0), (0, 0, 0.0199), pair=f"{THORNTON} tangential history 0.3")
+    press += f"group top id 2\nvelocity top set 0.3 0 0\n{motion}run 60\n"
+    jump = f"fix fall top gravity 2.5e6 vector 0 0 -1\nvelocity top set 0 0 60\nrun 30\n{DUMP}"
+    _, plain = run(press + jump, tmp_path / "plain")
+    out, again = run(press + "write_restart here\n" + AGAIN + motion + jump, tmp_path / "again")
+    assert np.array_equal(plain, again) and "Neighbor list builds = 0" in out
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_restart_file_holds_the_strain_so_far(ranks, tmp_path):
     """Two spheres have met and parted."""

@@ -41,11 +41,13 @@ def test_moving_borders_of_ranks_and_sorted_atoms_change_no_energy(tmp_path):
 def test_a_restart_file_continues_to_the_bit(style, tmp_path):
     """Materials, histories of pairs and walls, and energies are in the file; the deck gives the walls again."""
     deck = bed(TWO_TYPES, types=2, style=style, boundary="p p f", more=WALLS)
-    whole, end = run(deck + "run 1000\nwrite_restart half\nrun 1000\n" + DUMP, tmp_path)
+    of_atoms = "".join(f" f_EP_HISTORY0[{k}]" for k in (1, 2, 3)) * ("energies" in style)
+    dump = DUMP.replace("omegaz", "omegaz" + of_atoms)
+    whole, end = run(deck + "run 1000\nwrite_restart half\nrun 1000\n" + dump, tmp_path)
     head = "comm_modify vel yes\nread_restart half\nneighbor 0.0004 bin\nneigh_modify delay 0\n"
     rest = deck[deck.index("fix floor") :]
-    again, continued = run(head + rest + "run 1000\n" + DUMP, tmp_path)
-    assert np.array_equal(end, continued)
+    again, continued = run(head + rest + "run 1000\n" + dump, tmp_path)
+    assert np.array_equal(end, continued) and np.all(end[:, 10:].max(axis=0) > 0)
     assert column(whole, "KinEng")[-1] == column(again, "KinEng")[-1]
 
 
@@ -284,6 +286,14 @@ def test_types_in_the_wrong_order_end_with_one_sentence(tmp_path):
         bed(TWO_TYPES, types=2).replace("pair_coeff 2 2", "pair_coeff 2*2 1 hertz 1 0\npair_coeff 2 2"), tmp_path
     )
     assert code != 0 and "pair_coeff 2*2 1: the first type is above the second; exchange them" in out
+
+
+def test_a_rank_without_spheres_of_a_type_has_their_cutoff(tmp_path):
+    """Each of two spheres in contact is the only one of its type and of its rank."""
+    deck = "processors {} 1 1\n" + spheres((-0.0099, 0, 0), (0.0099, 0, 0), pair=THORNTON)
+    deck = deck.replace("create_box 1", "create_box 2") + "set atom 2 type 2\nfix motion all nve/sphere\n"
+    one, two = (run(f"{deck.format(n)}timestep 1e-6\nrun 20\n{DUMP}", tmp_path / str(n), ranks=n)[1] for n in (1, 2))
+    assert np.array_equal(one, two) and one[1, 4] > 0
 
 
 def test_unlike_types_have_the_lower_strength_and_the_mean_of_the_coefficients(tmp_path):
