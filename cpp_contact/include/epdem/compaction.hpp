@@ -53,6 +53,10 @@ inline constexpr double least_loss = 1e-12;
 /// Other contacts screen a contact from this share of its own area on.
 inline constexpr double least_others = 1e-9;
 
+/// Sums that would move the overlap of a contact by less than this share of R*, and the pressure by less than this
+/// share of Y, leave its peak as it is, which needs no backbone then; the force has errors of 1e-8.
+inline constexpr double at_rest = 1e-10;
+
 /// Largest growth of a sphere over its radius; lattices have 0.06 at a relative density of 0.95. A sphere that grows
 /// more, a soft one among hard ones, would touch spheres that no host has listed.
 inline constexpr double most_growth = 0.2;
@@ -272,11 +276,9 @@ EPDEM_INLINE T body_pressure(const Growing<wall, T>& c) noexcept {
 }
 
 /// The backbone at the overlap b where growth has added `grown` to it; valid where b is above the elastic overlap.
-/// whole: the force that the law alone has at b.
 template <class Law, class T = Number<Law>>
-EPDEM_INLINE Point<T> grown_point(const Law& law, T R_star, T b, T grown, T pressure, T& whole) noexcept {
+EPDEM_INLINE Point<T> grown_point(const Law& law, T R_star, T b, T grown, T pressure) noexcept {
   Point<T> p = law.load(R_star, b);
-  whole = p.force;
   const auto grows = grown > 0.0;
   if (!any(grows)) return p;
   const T alone = b - grown;
@@ -309,6 +311,14 @@ EPDEM_INLINE Depths<T> screened(const Growing<wall, T>& c, const BodyShares<T>& 
   if constexpr (wall) return {side(c.i.area, c.curvature_i, s_i, bodies.bulk_i, x.i), T{}};
   return {side(c.i.area, c.curvature_i, s_i, bodies.bulk_i, x.i),
           side(c.j.area, c.curvature_j, 1.0 - s_i, bodies.bulk_j, x.j)};
+}
+
+/// Work of the backbone with growth [J] between two overlaps apart, whose forces are known: beside the force of the law
+/// alone the force of growth is smooth.
+template <class Law, class T = Number<Law>>
+[[gnu::noinline]] T work_of_leap(const Law& law, T R_star, T from, T to, T F_from, T F_to) noexcept {
+  const T F0 = law.load(R_star, from).force, F1 = law.load(R_star, to).force;
+  return law.work(R_star, from, to, F0, F1) + 0.5 * (to - from) * ((F_from - F0) + (F_to - F1));
 }
 
 /// A bond after a step; zeros where it is broken.
@@ -376,7 +386,6 @@ struct GrownStep {
   Number<Law> reached;                // largest overlap without growth, less the retreat, before the step [m]
   Number<Law> reached_grown;          // the same with growth
   Number<Law> delta_max;              // largest overlap without growth after the step [m]
-  Number<Law> whole;                  // force of the law alone at a peak that this step reaches [N]
   Number<Law> grip;                   // pull at which the bond breaks [N], 0: none or broken
   Number<Law> stretched, bond_loss;   // elastic energy of the bond; what it lost for good in this step [J]
   GrownEnd<Number<Law>> last, state;  // before and after the step
@@ -394,12 +403,18 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   s.last = end_of(last);
   const auto known = last.screening > 0.0;
   s.reached = select(known, before.delta_max, min(overlap, zero));
-  const Added<T> v = added_overlap(c, repeats);
+  Added<T> v = added_overlap(c, repeats);
   T pressure_now = last.last_pressure, pressure = last.pressure;
   if (!repeats) {
     pressure_now = detail::body_pressure(c);
     pressure = max(pressure_now, 2.0 * pressure_now - select(known, last.last_pressure, pressure_now));
   }
+  const auto rests = known & (fabs(v.extrapolated - last.added) < at_rest * R_star) &
+                     (fabs(v.grown - last.grown) < at_rest * R_star) &
+                     (fabs(pressure - last.pressure) < at_rest * law.Y);
+  v.extrapolated = select(rests, last.added, v.extrapolated);
+  v.grown = select(rests, last.grown, v.grown);
+  pressure = select(rests, last.pressure, pressure);
   // an only contact of a body has exactly no loss there: round-off would give the body a Q without sense
   const auto side = [](T twice) { return select(twice > 2.0 * least_loss, 0.5 * twice, T{}); };
   const auto sides = [&](T both, T lean) { return detail::Depths<T>{side(both + lean), side(both - lean)}; };
@@ -441,7 +456,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
     return falls & known & (v.extrapolated == last.added) & (v.grown == last.grown) & (pressure == last.pressure);
   };
   const auto load = [&](T b) __attribute__((always_inline)) {
-    return detail::grown_point(law, R_star, b, v.grown, pressure, s.whole);
+    return detail::grown_point(law, R_star, b, v.grown, pressure);
   };
   s.step = step_of_peak(law, R_star, grown_before, s.overlap, kept, load);
 
@@ -524,22 +539,23 @@ template <class Law, class T = Number<Law>>
   T lost{}, held{};
   if (any(!yields)) {
     if (holds) held = stored(dented, safe, b, s.overlap);
-    lost = stored(was_dented, safe0, b0, middle + less0) - stored(dented, safe, b, middle + less);
+    // a peak that stays: the sums move the overlap alone
+    const auto stays = (was_dented & dented & (b == b0) & (safe.force == safe0.force)) | !(was_dented | dented);
+    lost = 0.5 * (s.last.force + s.state.force) * (less0 - less);
+    if (any(!(stays | yields)))
+      lost =
+          select(stays, lost, stored(was_dented, safe0, b0, middle + less0) - stored(dented, safe, b, middle + less));
   }
   if (any(yields)) {
     const T delta_Y = law.elastic_overlap(R_star);
-    const T from = select(yields, max(zero, select(known, b0, zero)), delta_Y), to = select(yields, b, delta_Y);
-    T F0 = hertz_point(law.E_star, R_star, from).force, U0 = hertz_work(law.E_star, R_star, from);
-    F0 = select(was_dented, safe0.force, F0);
-    U0 = select(was_dented, recovered_work(law.E_star, safe0), U0);
+    const T from = select(yields, max(delta_Y, select(known, b0, zero)), delta_Y), to = select(yields, b, delta_Y);
+    const T F0 = select(was_dented, safe0.force, hertz_point(law.E_star, R_star, from).force);
+    const T U0 = select(was_dented, recovered_work(law.E_star, safe0), hertz_work(law.E_star, R_star, from));
     const T U = recovered_work(law.E_star, safe);
-    // beside the force of the law alone, the force of growth is smooth
-    T alone0 = F0, alone = safe.force;
-    const auto grew = yields & was_dented & (s.last.grown > 0.0), grows = yields & (s.state.grown > 0.0);
-    if (any(grew)) alone0 = select(grew, law.load(R_star, only(grew, from)).force, F0);
-    if (any(grows)) alone = select(grows, s.whole, safe.force);
-    const T of_growth = 0.5 * (to - from) * ((F0 - alone0) + (safe.force - alone));
-    const T work = law.work(R_star, from, to, alone0, alone) + of_growth + U0 - U;
+    T work = 0.5 * (to - from) * (F0 + safe.force);
+    const auto leaps = yields & (to > 1.1 * from);
+    if (any(leaps)) work = select(leaps, detail::work_of_leap(law, R_star, from, to, F0, safe.force), work);
+    work = work + U0 - U;
     lost = select(yields, work - 0.5 * (s.last.force + safe.force) * (less - less0), lost);
     held = select(yields, U, held);
   }
