@@ -60,8 +60,8 @@ TEXT = """# Lean decks
 of its case requires. The table shows what a feature adds to the case without features, `thornton` without friction:
 lines of the deck, bytes of history per contact (the same in LIGGGHTS and LAMMPS; contacts of YADE have one size for all
 features) and time of a step as a ratio. The case is a lattice of {spheres} spheres, all in contact, between two walls;
-processor time on one core, the shortest of {repeats} interleaved runs. Two tables on a quiet machine differ by up to
-5 % in LIGGGHTS, 9 % in LAMMPS and 3 % in YADE. LAMMPS has the options of a contact in one line.
+processor time on one core, the shortest of {repeats} interleaved runs. Three tables on a quiet machine differ by up to
+9 %. LAMMPS has the options of a contact in one line.
 
 {table}
 
