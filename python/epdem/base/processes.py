@@ -9,7 +9,6 @@ import ctypes
 import math
 import os
 import re
-import select
 import shutil
 import signal
 import subprocess
@@ -154,16 +153,16 @@ def call(
                     )
                 except OSError as error:
                     raise EngineError(f"{command[0]}: cannot be started ({error})") from None
-            with os.fdopen(os.pidfd_open(process.pid), "rb", buffering=0) as ended:  # Popen.wait looks every 50 ms
-                while process.poll() is None:
-                    left = end - time.monotonic()
-                    if left <= 0.0:
-                        end_of_log = last_words(path)
-                        raise EngineError(
-                            f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {end_of_log}"
-                        )
-                    select.select([ended], [], [], None if report is None and left == math.inf else min(left, POLL))
-                    follow()
+            while process.poll() is None:
+                left = end - time.monotonic()
+                if left <= 0.0:
+                    end_of_log = last_words(path)
+                    raise EngineError(
+                        f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {end_of_log}"
+                    )
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
+                follow()
             follow()
             reader.seek(begin)
             failed = process.returncode or any(line.startswith(b"ERROR") for line in reader)
