@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
 //
-// impact LAW E* R* Gamma p_y c_strain m* V dt gap steps: rebound speed (0: still attached after `steps`), largest force, largest
-//     overlap, smallest force but in the step of touch, overlap and step of the last attached sample
+// impact LAW E* R* Gamma p_y c_strain m* V dt gap steps: rebound speed (0: still attached after `steps`), largest
+//     force, largest overlap, smallest force but in the step of touch, overlap and step of the last attached sample
 // twice LAW ...: the same of a second impact, the pair being sent back with the speed at which it came out
-// path LAW E* R* Gamma p_y c_strain n overlap_1 ...: force, radius and stored energy at prescribed overlaps, closing speed 0
+// path LAW E* R* Gamma p_y c_strain n overlap_1 ...: force, radius and stored energy at prescribed overlaps, closing
+//     speed 0
 // books LAW E* R* Gamma p_y c_strain n overlap_1 ...: force, stored energy, work of yield and of adhesion so far
 // hertz|thornton|cavity E* R* p_y n overlap_1 ...: the same by the laws without adhesion
 // The p_y of cavity_adhesive is its yield stress; c_strain is its alone.

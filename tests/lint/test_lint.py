@@ -13,8 +13,9 @@ from marks import thorough
 
 ROOT = Path(__file__).parents[2]
 # ruff and shellcheck find scripts without a suffix only by name
-SCRIPTS = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env python3")]
-SHELL = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env bash")]
+ALL_SCRIPTS = [p for p in sorted((ROOT / "scripts").iterdir()) if p.is_file()]  # beside __pycache__
+SCRIPTS = [str(p) for p in ALL_SCRIPTS if p.read_text().startswith("#!/usr/bin/env python3")]
+SHELL = [str(p) for p in ALL_SCRIPTS if p.read_text().startswith("#!/usr/bin/env bash")]
 PYTHON = ["python", "tests", "bench", "docs", "packaging", *SCRIPTS]
 CPP = [str(p) for room in ("cpp_contact", "tests", "bench") for p in sorted((ROOT / room).rglob("*.[hc]*"))]
 CPP = [path for path in CPP if path.endswith((".hpp", ".h", ".cpp"))]
@@ -69,7 +70,7 @@ def test_the_scripts_of_pages_find_what_they_import(folder):
 def test_every_source_states_its_licence():
     """The physics is free for every code; an adapter of a host under GPL is not."""
     python = [path for room in PYTHON[:4] for path in (ROOT / room).rglob("*.py")]
-    scripts = [path for path in (ROOT / "scripts").iterdir() if not path.suffix]
+    scripts = [path for path in ALL_SCRIPTS if not path.suffix]
     cmake = [path for path in (ROOT / "cpp_contact").rglob("CMakeLists.txt")]
     seen = set()
     for path in [*python, *scripts, *cmake, *map(Path, CPP)]:
