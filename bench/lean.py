@@ -28,7 +28,7 @@ sys.path.insert(0, str(ROOT / "docs"))
 HOSTS = ("liggghts", "lammps", "yade")
 SIDE, RADIUS, OVERLAP, STEP = 8, 1e-3, 2e-3, 1e-6  # spheres, m, over the diameter, s
 REPEATS = 3
-STEPS, FEW = {"liggghts": 10000, "lammps": 10000, "yade": 10000}, 20  # of a run
+STEPS, FEW = 10000, 20  # of a run
 RUB = {"friction": 0.3}
 ADHESIVE = {"name": "thornton_ning", "work_of_adhesion": "1e-3 J/m^2"}
 FEATURES: dict[str, dict] = {
@@ -123,7 +123,7 @@ def measure(repeats: int, scratch: Path) -> pd.DataFrame:
         tool = scene_engine(host)
         assert isinstance(tool, Host)
         for number, (name, feature) in enumerate(FEATURES.items()):
-            for steps in (STEPS[host], FEW):
+            for steps in (STEPS, FEW):
                 folder = scratch / f"{host}_{number}_{steps}"
                 folder.mkdir()
                 p = scene(feature, folder, steps)
@@ -133,10 +133,10 @@ def measure(repeats: int, scratch: Path) -> pd.DataFrame:
         for _ in range(repeats):
             start.append(processor_time(tool, scratch / f"{host}_0_{FEW}"))
             for number, name in enumerate(FEATURES):
-                times[name].append(processor_time(tool, scratch / f"{host}_{number}_{STEPS[host]}"))
+                times[name].append(processor_time(tool, scratch / f"{host}_{number}_{STEPS}"))
             print(host, start, times, flush=True)
         for name in FEATURES:
-            rows[name, host]["us_per_step"] = 1e6 * (min(times[name]) - min(start)) / (STEPS[host] - FEW)
+            rows[name, host]["us_per_step"] = 1e6 * (min(times[name]) - min(start)) / (STEPS - FEW)
     keys = pd.DataFrame([*rows], columns=["feature", "host"])
     return keys.assign(**pd.DataFrame(rows.values()))
 

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from pages import DOCS, load, markdown, store
 
+from epdem.case.impact import load as load_case
 from epdem.engines import scene_engine
 from epdem.report.chart import save
 from epdem.scenes.plan.timestep import stable_step
@@ -29,9 +30,9 @@ HOSTS = ["embedded", "liggghts", "lammps", "yade"]
 OTHERS = {"liggghts-hertz": "LIGGGHTS's `hertz`", "lammps-hertz": "LAMMPS's `hertz/material`"}
 OTHERS |= {"lammps-mdr": "LAMMPS's `mdr`", "yade-mindlin": "YADE's Mindlin"}
 YIELDING = ["thornton", "cavity", "johnson"]  # of the bulk scenes
+CASES = DOCS.parent / "cases"
 WEAKER = "cavity_adhesive"  # the work of adhesion of the case is close to its limit
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000)
-TITLE = "Steel sphere on a steel wall"
 OUTPUT = {"rows": 400, "particles": 1, "energy": True, "loads": True}
 SHARES = (0.2, 0.1, 0.05, 0.025, 0.0125)  # of the stability limit, of the bed
 
@@ -145,9 +146,9 @@ def joined(plain: cost.Outcome, *others: cost.Outcome) -> cost.Outcome:
 def main() -> None:
     """Run impacts and the bulk scenes; write tables, figure and page. --page: write figure and page from the tables."""
     if "--page" not in sys.argv:
-        cases, laws = DOCS.parent / "cases", [name for name in LAWS]
-        plain = cost.run(cases / "steel_wall.toml", engines=HOSTS, laws=laws, steps=STEPS, progress=print)
-        sticky = cases / "adhesion_thornton_1998.toml"
+        laws = [name for name in LAWS]
+        plain = cost.run(CASES / "steel_wall.toml", engines=HOSTS, laws=laws, steps=STEPS, progress=print)
+        sticky = CASES / "adhesion_thornton_1998.toml"
         with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
             weaker = Path(scratch) / sticky.name
             weaker.write_text(sticky.read_text(encoding="utf-8").replace("0.2 J/m^2", "0.1 J/m^2"), encoding="utf-8")
@@ -160,7 +161,7 @@ def main() -> None:
         for name, table in zip(NAMES, [*tables(outcome).values(), bulk, bed_convergence(YIELDING)], strict=True):
             store(name, table)
     errors, models, *scenes = map(load, NAMES)
-    save(chart(errors, TITLE), DOCS / "figures", data=False)
+    save(chart(errors, load_case(CASES / "steel_wall.toml").case.title), DOCS / "figures", data=False)
     parts = models["model"].str.partition(", ")
     ratios = pd.DataFrame({"engine": parts[0], "law": parts[2], "ratio": models["ratio_to_hertz"]})
     ratios[ratios["law"] != ""].to_csv(DOCS.parent / "data/step_times.csv", index=False, lineterminator="\n")

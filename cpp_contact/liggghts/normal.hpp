@@ -169,7 +169,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   /// Whether spheres of this run can be refused because of their adhesion, and the least R* of the types i * width + j.
   bool judges() const { return !least_.empty(); }
   const std::vector<double>& least() const { return least_; }
-  /// Ends the run at a contact below the least R*; j: -1 at a wall, which has a type of its own.
+  /// Ends the run at the contact of sphere i with sphere j or, j = -1, with a wall of type_j: its R* is below the
+  /// least.
   void refuse_contact(int i, int j, int type_j) const {
     const double R_i = atom->radius[i], R_star = j < 0 ? R_i : reduced_finite(R_i, atom->radius[j]);
     const std::string other = j < 0 ? " and a wall" : " and " + std::to_string(atom->tag[j]);

@@ -85,7 +85,7 @@ def test_what_a_feature_adds_is_measured_and_the_page_has_it(scripts, tmp_path, 
 
     names = [next(iter(lean.FEATURES)), "`contact.friction`", "friction, `rolling` `epsd2`", "`output.loads`"]
     monkeypatch.setattr(lean, "HOSTS", ("liggghts",))
-    monkeypatch.setattr(lean, "STEPS", {"liggghts": 2000})
+    monkeypatch.setattr(lean, "STEPS", 2000)
     monkeypatch.setattr(lean, "FEATURES", {name: lean.FEATURES[name] for name in names})
     found = lean.measure(1, tmp_path)
     assert found["bytes"].tolist() == [16, 40, 64, 16]

@@ -198,7 +198,13 @@ struct CavityAdhesive {
     return c * (y_Y * middle + select(overlap > delta_P, above, T{}));
   }
 
-  /// The same in parts, -d F_b and the integral of 2 E* a d + F_b d', by Gauss's rule in ln alpha_b between the kinks.
+  /// 2 E* a d + F_b d' [N], which mismatch_by_quadrature sums.
+  T mismatch_slope(T R_star, T overlap, const Point<T>& now) const noexcept {
+    return opening(now.radius) *
+           (2.0 * E_star * now.radius + 0.5 * now.force * body.widening(R_star, overlap) / overlap);
+  }
+
+  /// The mismatch in parts: -d F_b and the integral of mismatch_slope, by Gauss's rule in ln alpha_b between the kinks.
   T mismatch_by_quadrature(T R_star, T overlap) const noexcept {
     const T delta_Y = body.elastic_overlap(R_star), P = body.plastic_ratio * R_star, L = body.least_overlap(R_star);
     const auto slope = [&](T b) { return b * mismatch_slope(R_star, b, body.load(R_star, b)); };
@@ -213,12 +219,6 @@ struct CavityAdhesive {
   /// W_b - U - mismatch [J] of a peak at alpha_b: what its growth since yield has taken for good.
   T lost(T R_star, T overlap, const Point<T>& peak) const noexcept {
     return body.work(R_star, overlap) - recovered_work(E_star, peak) - mismatch(R_star, overlap);
-  }
-
-  /// 2 E* a d + F_b d' of its quadrature.
-  T mismatch_slope(T R_star, T overlap, const Point<T>& now) const noexcept {
-    return opening(now.radius) *
-           (2.0 * E_star * now.radius + 0.5 * now.force * body.widening(R_star, overlap) / overlap);
   }
 
   /// The increase of lost between near peaks of one phase, by Simpson's rule.

@@ -452,9 +452,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   s.reached_grown = s.reached + v.extrapolated;
   State<Law> grown_before = before;
   grown_before.delta_max = s.reached_grown;
-  const auto kept = [&](auto falls) __attribute__((always_inline)) {
-    return falls & known & (v.extrapolated == last.added) & (v.grown == last.grown) & (pressure == last.pressure);
-  };
+  const auto kept = [&](auto falls) __attribute__((always_inline)) { return falls & rests; };
   const auto load = [&](T b) __attribute__((always_inline)) {
     return detail::grown_point(law, R_star, b, v.grown, pressure);
   };
@@ -555,8 +553,7 @@ template <class Law, class T = Number<Law>>
     T work = 0.5 * (to - from) * (F0 + safe.force);
     const auto leaps = yields & (to > 1.1 * from);
     if (any(leaps)) work = select(leaps, detail::work_of_leap(law, R_star, from, to, F0, safe.force), work);
-    work = work + U0 - U;
-    lost = select(yields, work - 0.5 * (s.last.force + safe.force) * (less - less0), lost);
+    lost = select(yields, work + U0 - U - 0.5 * (s.last.force + safe.force) * (less - less0), lost);
     held = select(yields, U, held);
   }
   // what the bodies take of the energy at the stationary Q: 3/7 N Q^(7/3) is the sum of 3/7 Q c d_e F

@@ -199,7 +199,7 @@ def captured_output(command: list[str], env: dict[str, str] | None = None) -> st
 
 
 def said_by(command: list[str], env: dict[str, str]) -> str:
-    """captured_output of a program's version or help, asked for once while its file stays as it is."""
+    """What a program prints as its version or help: captured_output, once while the file of the program stays."""
     path = shutil.which(command[0], path=env.get("PATH"))
     status = Path(path).stat() if path else None
     key = (*command, path, *((status.st_mtime_ns, status.st_size) if status else ()))
