@@ -11,9 +11,8 @@ from epdem.engines.yade.engine import Yade
 from epdem.verification.invariance import input_scripts, pairs
 from epdem.verification.invariance import yade as yade_pairs
 from epdem.verification.models.lammps import LammpsMdr
-from epdem.verification.motion import yade as yade_motions
 from epdem.verification.motion.compare import touch_of
-from epdem.verification.motion.liggghts import LiggghtsMotions
+from epdem.verification.motion.hosts import LiggghtsMotions, YadeMotions
 from epdem.verification.motion.paths import shear_elastic
 from stored_decks import CASES, SPHERE, compare, planned
 
@@ -39,7 +38,7 @@ def test_the_header_of_the_deck_of_mdr_is_comments(tmp_path):
     assert (tmp_path / "in.impact").read_text().splitlines()[:2] == ["# two shell touch pwned", "# joined"]
 
 
-@pytest.mark.parametrize(("engine", "script"), [(LiggghtsMotions(), "in.motion"), (yade_motions, "motion.py")])
+@pytest.mark.parametrize(("engine", "script"), [(LiggghtsMotions(), "in.motion"), (YadeMotions(), "motion.py")])
 def test_the_deck_of_a_motion_is_as_stored(engine, script, module):
     """The materials are of one name each: the second sphere is of the wall's."""
     touch = touch_of(CASES / "oblique_steel.toml")

@@ -13,7 +13,7 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError, EngineError
 from epdem.verification.motion import paths as motions
 from epdem.verification.motion.compare import compare, touch_of
-from epdem.verification.motion.embedded import EmbeddedMotions
+from epdem.verification.motion.hosts import EmbeddedMotions
 from epdem.verification.motion.prescribed import check_motion, read, text
 from marks import thorough
 

@@ -16,15 +16,12 @@ from ...impacts.experiment import experiment
 from ...jobs.engine import check_law, require
 from ...theory.pair import sphere_mass
 from ..runner import STUDIES, Outcome, Progress, Row, run, silent
-from .embedded import EmbeddedMotions
-from .lammps import LammpsMotions
-from .liggghts import LiggghtsMotions
+from .hosts import EmbeddedMotions, LammpsMotions, LiggghtsMotions, YadeMotions
 from .paths import MOTIONS, objectivity, rigid_rotation
 from .prescribed import Loads, Motion, MotionEngine, Touch, check_motion, read, text, unit_normals
-from .yade import YadeMotions
 
 _TOOLS = (EmbeddedMotions, LiggghtsMotions, YadeMotions, LammpsMotions)
-ENGINES: dict[str, type[MotionEngine]] = {tool.name: tool for tool in _TOOLS}
+ENGINES: dict[str, type[MotionEngine]] = {tool.host.name: tool for tool in _TOOLS}
 FRICTION = 0.3  # of a case that has none
 
 

@@ -7,9 +7,9 @@ bodies i and j.
 
 import json
 import re
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,9 @@ from ...case.sizes import LARGEST_FILE
 from ...case.toml import text_of
 from ...engines.input_script import impact_model
 from ...errors import CaseError
+from ...impacts.engine import ImpactEngine
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
-from ...jobs.engine import Feature
 from ...laws.library import Array
 from ...scenes.plan.model import Model
 
@@ -76,8 +76,12 @@ class Motion:
 
     @property
     def steps(self) -> int:
-        """How many."""
         return len(self.place)
+
+    @property
+    def states(self) -> Array:
+        """Place, velocity and spin of both spheres in every step, shape (n, 2, 9)."""
+        return np.concatenate([self.place, self.velocity, self.spin], axis=2)
 
     def columns(self) -> dict[str, Array]:
         """By the names of the files."""
@@ -113,21 +117,20 @@ class Loads:
         return {f"{name}_{side}": values[:, k] for name, values in both for k, side in enumerate("ij")}
 
 
-def summary(touch: Touch, motion: Motion) -> str:
-    """One line for the head of a deck."""
-    return f"{motion.name}: {motion.steps} steps of a prescribed motion, law {touch.experiment.law.name}"
+class MotionEngine(ABC):
+    """An engine of impacts that computes the forces of a prescribed motion."""
 
+    host: type[ImpactEngine]
+    laws: tuple[str, ...] | None = None
 
-class MotionEngine(Protocol):
-    """One way to compute the forces of a prescribed motion."""
-
-    name: str
-    laws: tuple[str, ...] | None  # as in `Engine`
-    features: frozenset[Feature]  # as in `Engine`
+    def __init__(self) -> None:
+        self.tool = self.host()
+        self.name, self.features = self.tool.name, self.tool.features
 
     def missing(self) -> str | None:
-        """None if the engine can run here, else a sentence with the command that installs it."""
+        return self.tool.missing()
 
+    @abstractmethod
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
         """Run the motion in `folder`. Raises CaseError for what the engine cannot do, EngineError."""
 
