@@ -4,6 +4,7 @@
 Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own elastic `hertz` in the same run.
 """
 
+import math
 import tempfile
 import time
 from dataclasses import dataclass, replace
@@ -16,6 +17,10 @@ import pandas as pd
 from ..case.impact import Case, load
 from ..case.toml import error_context
 from ..engines import ImpactEngine
+from ..engines.embedded import Embedded, numbers
+from ..engines.host import Host
+from ..engines.liggghts.engine import Liggghts
+from ..engines.log import loop_seconds
 from ..errors import EngineError
 from ..impacts.comparison import CHECKED
 from ..impacts.experiment import experiment, pair_of
@@ -26,7 +31,6 @@ from ..laws.strengths import default_numbers, find_law
 from .models import ELASTIC, OWN_LAW, REFERENCE, SAME_LAW, engine, only_law
 from .runner import STUDIES, Progress, compare_impacts, silent
 from .stability.cases import HARDENING
-from .timing import seconds
 
 TIMED = 300  # least steps in contact of the runs that are timed
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
@@ -117,6 +121,30 @@ def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
     rows = rows.sort_values("steps", ascending=False)
     good = (rows["e_n_error"] <= target).cumprod().astype(bool)
     return rows[good].iloc[-1] if good.any() else None
+
+
+def seconds(tool: ImpactEngine, plan: Plan, folder: Path) -> dict[str, float]:
+    """Times of one run with the least possible output [s]: startup, setup, stepping; NaN where unknown."""
+    if isinstance(tool, Embedded):
+        x, begin = plan.experiment, time.perf_counter()
+        law = x.native_law()
+        ready = time.perf_counter()
+        law.impacts(steps=plan.steps, **numbers(plan))
+        return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
+    assert isinstance(tool, Host)
+    deck, *_ = tool.write(plan, folder)
+    lines = deck.read_text(encoding="utf-8").splitlines(keepends=True)
+    # stepping, not writing
+    kept = (line for line in lines if not line.startswith(("dump", '    PyRunner(command="record()"')))
+    deck.write_text("".join(kept), encoding="utf-8")
+    startup = math.nan
+    if isinstance(tool, Liggghts):
+        (folder / "in.empty").write_text("# nothing\n", encoding="utf-8")
+        startup = tool.start("in.empty", folder, out="out.empty", seconds=120)
+    total = tool.start(deck.name, folder, seconds=600)
+    stepping = loop_seconds(folder / tool.launcher.OUT)
+    setup = total - stepping - (0.0 if math.isnan(startup) else startup)
+    return {"startup": startup, "setup": max(setup, 0.0), "stepping": stepping}
 
 
 def _timings(chosen: list[Model], steps: list[int], repetitions: int, folder: Path, progress: Progress) -> pd.DataFrame:

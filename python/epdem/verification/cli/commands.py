@@ -56,8 +56,8 @@ def crosscheck(
     """
     from ...case.impact import load
     from ..engine_comparison import crosscheck as check
+    from ..engine_comparison import crosscheck_tables
     from ..pages import of_crosscheck
-    from ..tables import crosscheck_tables
 
     folders = [out / path.stem for path in cases] if out and len(cases) > 1 else [out for _ in cases]
     if out and len(set(folders)) < len(cases):

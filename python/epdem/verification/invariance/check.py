@@ -5,33 +5,38 @@ Swapping names, sorting bodies, changing owners or stopping and restarting in mi
 restitution nor momentum.
 """
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ...base import rendering as decks
 from ...engines import ImpactEngine
+from ...engines.host import Host
+from ...engines.input_script import data_text, equal_spheres
 from ...engines.lammps.engine import Lammps
+from ...engines.lammps.tables import impact_frames
+from ...engines.liggghts import dump
 from ...engines.liggghts.engine import Liggghts
 from ...engines.yade.engine import Yade
+from ...engines.yade.scene_parts import table_text
 from ...errors import EngineError
 from ...impacts.experiment import Experiment
 from ...impacts.plan import plan
 from ..models.theories import prediction as predict
-from . import input_scripts, yade
-from .pairs import AXIS, VARIANTS, pairs, unequal_spheres
+from .pairs import AXIS, VARIANTS, Pairs, pairs, unequal_spheres
 
 FAILED = float("inf")  # it died or lost particles: as wrong as can be
+# a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
+OF_YADE = ("swap", "restart")
 
 
-def _host(tool: ImpactEngine) -> tuple[tuple[str, ...], Callable[..., np.ndarray]] | None:
-    """The variants of an engine, and the function that runs one: velocities [m/s], (2, n, 3); None: it has none."""
-    if isinstance(tool, Yade) and (tool.classes or tool.own_law):  # a deck with the C library does not continue
-        return yade.VARIANTS, yade.velocities
-    if isinstance(tool, Liggghts | Lammps) and tool.name != "lammps-mdr":  # which has walls only
-        return VARIANTS, input_scripts.velocities
-    return None
+def variants_of(tool: ImpactEngine) -> tuple[str, ...]:
+    """The variants that an engine has; none where it takes no pairs of spheres."""
+    if isinstance(tool, Yade):
+        return OF_YADE if tool.classes or tool.own_law else ()  # a deck with the C library does not continue
+    return VARIANTS if isinstance(tool, Liggghts | Lammps) and tool.name != "lammps-mdr" else ()  # which has walls only
 
 
 def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> dict[str, float]:
@@ -41,9 +46,9 @@ def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> dict[str, float]
     the phases, NaN if the engine does not have it, inf if it failed; momentum: the largest change in any variant,
     relative to one body's change.
     """
-    if (host := _host(tool)) is None:
+    if not (variants := variants_of(tool)):
         return {}
-    variants, velocities = host
+    assert isinstance(tool, Host)
     pair = unequal_spheres(x)
     prediction = predict(tool, pair)
     p = plan(pair, prediction)
@@ -66,3 +71,60 @@ def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> dict[str, float]
         except (EngineError, ValueError):
             row[variant] = momentum = FAILED
     return row | {"momentum": momentum}
+
+
+def _box(pairs: Pairs) -> tuple[float, ...]:
+    """x = 0 is the border between two ranks, z = 0 one of bins."""
+    s, y = pairs.spread, pairs.sides[0].place[:, 1]
+    return -s, s, -s, float(y.max()) + s, -s, s
+
+
+def _data(pairs: Pairs, types: Sequence[str], swap: bool) -> str:
+    """The data file of the pairs; `swap`: the targets have the lower ids."""
+    rows = [row for g in pairs.ordered(swap) for row in equal_spheres(1 + types.index(g.body.material), g)]
+    return data_text("pairs", len(types), _box(pairs), rows)
+
+
+def _ranks(variant: str) -> int:
+    return 2 if variant == "migration" else 1
+
+
+def scripts(tool: Host, deck: Any, pairs: Pairs, variant: str) -> list[str]:
+    """The scripts of a variant in the order in which they run."""
+    if isinstance(tool, Yade):
+        sides = pairs.ordered(variant == "swap")
+        files = [(f"side{k}.data", s.body.radius, s.body.material) for k, s in enumerate(sides)]
+        template, about = "verification/yade/pairs.py.j2", {"deck": deck, "sides": files}
+        return [decks.render(template, **about, **run) for run in pairs.runs(variant, "middle.yade.gz")]
+    sort = 0.499 * _box(pairs)[-1] if variant == "sort" else None
+    template = f"verification/{'lammps' if isinstance(tool, Lammps) else 'liggghts'}/invariance.in.j2"
+    about = {"deck": deck, "ranks": _ranks(variant), "sort": sort}
+    return [decks.render(template, **about, **run) for run in pairs.runs(variant, "middle.restart")]
+
+
+def velocities(tool: Host, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
+    deck, swap, in_yade = tool.deck(pairs.plan), variant == "swap", isinstance(tool, Yade)
+    found = scripts(tool, deck, pairs, variant)
+    texts = {f"pairs{k}.py" if in_yade else f"in.{k}": text for k, text in enumerate(found)}
+    if in_yade:
+        tables = [np.hstack([side.place, side.velocity]).tolist() for side in pairs.ordered(swap)]
+        data = {f"side{k}.data": table_text("# x y z v_x v_y v_z, SI", table) for k, table in enumerate(tables)}
+    else:
+        data = {"impact.data": _data(pairs, deck.types, swap)}
+    tool.put(texts | data, folder)
+    path = folder / ("path.bin" if in_yade else "out.txt" if isinstance(tool, Lammps) else "out.bin")
+    for name in texts:
+        path.unlink(missing_ok=True)
+        tool.launcher.run(name, folder, ranks=_ranks(variant), out=f"out.{name}", seconds=120)
+    return np.flip(_read(tool, path, pairs.plan.n), axis=0) if swap else _read(tool, path, pairs.plan.n)
+
+
+def _read(tool: Host, path: Path, n: int) -> np.ndarray:
+    """The velocities that a run has left, in the order of its bodies."""
+    if not isinstance(tool, Yade):
+        return (impact_frames(path, 1, 2 * n) if isinstance(tool, Lammps) else dump.series(path)[-1]).reshape(2, n, 3)
+    try:
+        return np.asarray(np.load(path)).reshape(2, n, 3)
+    except OSError as error:
+        raise EngineError(f"{path}: the run left no result ({error}); see the logs beside it") from None
