@@ -2,13 +2,13 @@
 """Sources to cite for a case, its laws and engines."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from ..base import __version__
 from ..case.impact import Case
 from ..case.scene import SceneCase
 from ..laws.strengths import find_law
-from ..theory.sources import CHAPTER, SOURCES, Source
-from . import ENGINES
+from ..theory.sources import CHAPTER, SOURCES, Source, read_sources
 
 PROGRAM = Source("The epdem developers", f"epdem {__version__}", "CITATION.cff", kind="misc")
 
@@ -35,8 +35,8 @@ def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str
     if case.contact is not None and case.contact.tangential != "history":
         names = ("Jaeger 1993", "Popov and Hess 2015")
         found |= {f"partial slip, {name}": SOURCES[name] for name in names}
-    programs = {name: ENGINES[name].source for name in engines if name in ENGINES}
-    return Citations(found | {name: source for name, source in programs.items() if source})
+    programs = read_sources(Path(__file__).with_name("programs.toml"))
+    return Citations(found | {name: programs[name] for name in engines if name in programs})
 
 
 def of_laws(laws: Sequence[str]) -> dict[str, Source]:

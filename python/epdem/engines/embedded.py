@@ -13,14 +13,12 @@ from ..impacts.plan import Plan
 from ..jobs.engine import Engine, Feature, Report, silent
 from ..laws import library as claw
 from ..laws.library import ImpactNumbers
-from ..theory.sources import Source
 
 
 class Embedded(Engine[Plan, Trajectory]):
     """Impacts inside the C library, without any other program."""
 
     name = "embedded"
-    source: Source | None = None
     laws: tuple[str, ...] | None = None
     ranks, mpirun = 1, ""
     features = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION})

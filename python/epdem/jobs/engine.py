@@ -10,7 +10,6 @@ from typing import Any, Protocol, TypeVar
 from ..base.files import write_texts
 from ..errors import CaseError, EngineError
 from ..laws.strengths import find_law
-from ..theory.sources import Source
 
 
 class Feature(StrEnum):
@@ -49,7 +48,6 @@ class Tool(Protocol):
 class Engine(Tool, Protocol[Job, Result]):
     """One way to run a job: the plan of impacts gives a trajectory, the plan of a scene gives tables."""
 
-    source: Source | None  # what to cite for its program; None: epdem itself
     ranks: int  # the largest number on this machine
 
     @property

@@ -65,7 +65,11 @@ CHAPTER = Source(
     kind="book",
     note="ISBN 978-0-08-098337-0, chapter 8, section 8.2",
 )
-SOURCES = {
-    name: Source(**entry)
-    for name, entry in tomllib.loads(Path(__file__).with_name("sources.toml").read_text(encoding="utf-8")).items()
-}
+
+
+def read_sources(path: Path) -> dict[str, Source]:
+    """The sources of a file by their short names."""
+    return {name: Source(**entry) for name, entry in tomllib.loads(path.read_text(encoding="utf-8")).items()}
+
+
+SOURCES = read_sources(Path(__file__).with_name("sources.toml"))

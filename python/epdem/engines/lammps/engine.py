@@ -11,7 +11,6 @@ from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...scenes.plan.model import Model
-from ...theory.sources import Source
 from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, resume, tables
@@ -23,15 +22,6 @@ class Lammps(Host):
     """LAMMPS with pair_style ep and fix wall/ep."""
 
     name, title = "lammps", "LAMMPS"
-    source: Source | None = Source(
-        "A. P. Thompson et al.",
-        "LAMMPS - a flexible simulation tool for particle-based materials modeling at the atomic, meso, and continuum "
-        "scales",
-        "Comput. Phys. Commun.",
-        "271",
-        "108171",
-        2022,
-    )
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
     left_out: ClassVar[dict[str, str]] = {"sort_interval": "LAMMPS sorts the spheres in memory at intervals of its own"}

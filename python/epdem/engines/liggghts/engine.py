@@ -13,7 +13,6 @@ from ...impacts.engine import check_features
 from ...impacts.plan import Plan
 from ...jobs.engine import Feature
 from ...scenes.plan.model import Model
-from ...theory.sources import Source
 from .. import log
 from ..host import Host
 from ..input_script import impact_model
@@ -25,14 +24,6 @@ class Liggghts(Host):
     """LIGGGHTS with a model of epdem."""
 
     name, title = "liggghts", "LIGGGHTS"
-    source: Source | None = Source(
-        "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker",
-        "Models, algorithms and validation for opensource DEM and CFD-DEM",
-        "Prog. Comput. Fluid Dyn.",
-        "12",
-        "140",
-        2012,
-    )
     template = "liggghts/impact.in.j2"
     ranks = most_ranks()
     mpirun = launcher.MPIRUN

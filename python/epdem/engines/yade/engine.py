@@ -15,7 +15,6 @@ from ...impacts.plan import Plan, side_by_side
 from ...jobs.engine import Feature, Unsupported
 from ...scenes.plan.model import Model
 from ...scenes.plan.plan import ScenePlan
-from ...theory.sources import Source
 from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, tables
@@ -29,14 +28,6 @@ class Yade(Host):
     """YADE with the classes of epdem_yade or the C library in the deck; a run has one core."""
 
     name, title = "yade", "YADE"
-    source: Source | None = Source(
-        "V. Smilauer et al.",
-        "Yade Documentation, 3rd ed.",
-        "The Yade Project",
-        year=2021,
-        kind="manual",
-        note="doi:10.5281/zenodo.5705394",
-    )
     ranks, mpirun = 1, ""
     features = frozenset({Feature.DECK, Feature.POSITIONS})
     of_classes = frozenset(  # with epdem_yade only
