@@ -22,7 +22,7 @@ CURVE, EVERY = "impactor.txt", 100  # steps between two lines
 class Recorded(Liggghts):
     """LIGGGHTS with our model of a plan, and the height of the last sphere of its table in a file of its own."""
 
-    leftovers = (*Liggghts.leftovers, CURVE)
+    leftovers = f"{Liggghts.leftovers} {CURVE}"
 
     def __init__(self, begin: float = 0.0):
         super().__init__()

@@ -11,19 +11,14 @@ from typing import Any, ClassVar, TypeVar
 from ..base import rendering as decks
 from ..base.files import stored_results
 from ..base.processes import crowded
-from ..case import impact, scene
 from ..case.motions import Move
-from ..case.toml import error_context, read_toml
-from ..impacts.experiment import experiment
-from ..impacts.plan import Plan, plan
-from ..impacts.prediction import predict
+from ..impacts.plan import Plan
 from ..jobs.engine import Engine, Report, Unsupported, check_law, silent
 from ..jobs.stage import Tables, parts_hash
 from ..scenes.plan.limits import refuse_bodies_in_moved_walls
 from ..scenes.plan.model import Model
 from ..scenes.plan.phases import Phase
 from ..scenes.plan.plan import Resumed, ScenePlan
-from ..scenes.plan.plan import plan as plan_scene
 from ..scenes.tables.columns import named_rows, with_first_works
 from . import log
 from .frames import Frames
@@ -42,17 +37,8 @@ class Host(Engine[Any, Any]):
     left_out: ClassVar[dict[str, str]] = {}  # keys of [numerics] that the program does not have, and why
     launcher: ModuleType  # missing, version, run and OUT (file of both streams) of the program
     scripts = ("in.impact", "in.scene")  # names of the decks
-    leftovers: tuple[str, ...] = (  # patterns of files that an earlier run of a scene may have left in the folder
-        *(
-            "particles.*.*",
-            "contacts*.*.*",
-            "wall_contacts.*.txt",
-            "triangles.*.npy",
-            "stress_*.*.vtk",
-            "stress_*.*.txt",
-        ),
-        *("picture.*.ppm", "restart.*.bin", "in.resume"),
-    )
+    # patterns of files that an earlier run of a scene may have left in the folder
+    leftovers = "particles.*.* contacts*.*.* wall_contacts.*.txt stress_*.*.* picture.*.ppm restart.*.bin in.resume"
     scene_deck: ModuleType  # deck and files of a scene
     # trajectory of impacts; kinds of frames of a scene, from which particles, contact_table and wall_table; rows
     tables: ModuleType
@@ -101,7 +87,7 @@ class Host(Engine[Any, Any]):
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
         earlier = stored_results(folder)
         if isinstance(job, ScenePlan):
-            earlier.remove(*self.leftovers)
+            earlier.remove(*self.leftovers.split())
             self.start(self.scripts[1], folder, ranks=ranks, report=pruning(folder, report))
             return self.read(job, folder)
         earlier.remove("path.*", "end.*")
@@ -143,16 +129,6 @@ class Host(Engine[Any, Any]):
         if plan.stress_walls:
             found["walls"] = own.wall_table(frames)
         return found | {"phases": plan.phase_table}
-
-
-def job_of(path: Path) -> Plan | ScenePlan:
-    """The plan of the case or scene in a file. Raises CaseError."""
-    data = read_toml(path)
-    with error_context(path):
-        if scene.is_scene(data):
-            return plan_scene(scene.parse(data, path))
-        x = experiment(impact.parse(data, path))
-        return plan(x, predict(x))
 
 
 def refuse(place: str, value: object, reason: str) -> None:

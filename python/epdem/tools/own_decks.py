@@ -11,13 +11,18 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from ..base import paths, rendering
 from ..base.files import write_own
-from ..case.impact import load as load_impact
-from ..engines.host import job_of
+from ..case.impact import parse as parse_impact
+from ..case.scene import is_scene
+from ..case.scene import parse as parse_scene
+from ..case.toml import error_context, read_toml
 from ..engines.liggghts.deck import deck as scene_deck
 from ..engines.liggghts.engine import Liggghts
 from ..errors import CaseError
+from ..impacts.experiment import experiment
+from ..impacts.plan import plan
+from ..impacts.prediction import predict
 from ..scenes.plan.meshes import stl_text
-from ..scenes.plan.plan import ScenePlan
+from ..scenes.plan.plan import plan as plan_scene
 
 
 class _Sandbox(ImmutableSandboxedEnvironment):
@@ -64,14 +69,18 @@ def write(
     name = template.name.removesuffix(".j2")
     if not name or name == template.name:
         raise CaseError(f"{template}: a template's name ends in .j2; the deck is written without it")
-    job = job_of(case_path)
-    if isinstance(job, ScenePlan):
-        values: dict[str, object] = {"deck": scene_deck(job), "case": job.case}
-        beside = {f"{n}.stl": stl_text(n, triangles) for n, triangles in job.triangles.items()}
-    else:
-        deck = Liggghts().deck(job)
-        values = {"deck": deck, "case": load_impact(case_path)}
-        beside = Liggghts().data(deck)
+    data, values = read_toml(case_path), dict[str, object]()
+    with error_context(case_path):
+        if is_scene(data):
+            job = plan_scene(parse_scene(data, case_path))
+            values |= {"deck": scene_deck(job), "case": job.case}
+            beside = {f"{n}.stl": stl_text(n, triangles) for n, triangles in job.triangles.items()}
+        else:
+            case = parse_impact(data, case_path)
+            x = experiment(case)
+            deck = Liggghts().deck(plan(x, predict(x)))
+            values |= {"deck": deck, "case": case}
+            beside = Liggghts().data(deck)
     text, unused = _render(template, values | sets)
     if wrong := unused & set(sets):
         raise CaseError(f"--set {min(wrong)}: {template} does not use it; check the spelling")
