@@ -294,16 +294,16 @@ def write_own(folder: Path, texts: dict[str, str], *, force: bool = False) -> li
         return write_texts(folder, texts)
 
 
-def refuse_existing(path: Path, *, force: bool, option: str = "--out") -> None:
-    """Raise CaseError if a file that a user has named by `option` is there, unless `force` allows to replace it.
+def refuse_existing(path: Path, *, force: bool) -> None:
+    """Raise CaseError if a file that a user has named by --out is there, unless `force` allows to replace it.
 
     Also if its folder can neither be made nor written to, which is so known before the work that it is for.
     """
     if path.exists() and not force:
-        raise CaseError(f"{path} exists; name another file by {option}, or replace it by --force")
+        raise CaseError(f"{path} exists; name another file by --out, or replace it by --force")
     parent = next(p for p in path.absolute().parents if p.exists())
     if not (parent.is_dir() and os.access(parent, os.W_OK | os.X_OK)):
-        raise CaseError(f"{path}: {parent} is not a folder that can be written to; name another file by {option}")
+        raise CaseError(f"{path}: {parent} is not a folder that can be written to; name another file by --out")
 
 
 def write_project(folder: Path, files: dict[Path, Path]) -> list[Path]:

@@ -30,10 +30,10 @@ def charts(outcome: Outcome) -> list[Chart]:
     return [main_chart(outcome), errors(outcome), *loops(outcome)]
 
 
-def save_figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
-    """Draw the main figure into the folder of a run; the first of its files."""
+def save_figure(outcome: Outcome) -> Path:
+    """Draw the main figure into the folder of a run; its PNG file."""
     with claim(outcome.folder, force=True):
-        return save(main_chart(outcome), outcome.folder, formats)[0]
+        return save(main_chart(outcome), outcome.folder)[0]
 
 
 def main_chart(outcome: Outcome) -> Chart:

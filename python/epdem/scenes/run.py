@@ -13,7 +13,7 @@ from ..case.toml import LoadedCase, error_context, file_names, text_of
 from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from ..jobs.engine import Feature, Report, check, refusal, refuse_ranks, silent
+from ..jobs.engine import Feature, check, refusal, refuse_ranks
 from ..jobs.stage import Inputs, Stage, Tables, inputs, stage, without_comments
 from .judge import checks, measures
 from .judge.energy_balance import energy_balance
@@ -35,11 +35,11 @@ def _stored(folder: Path, key: str) -> results.SceneResults | None:
     return old if old.attributes.get("inputs") == key else None
 
 
-def run_plan(p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables:
+def run_plan(p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1) -> Tables:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
     check(engine, p)
     engine.write(p, folder)
-    return engine.run(p, folder, ranks=ranks, report=report)
+    return engine.run(p, folder, ranks=ranks)
 
 
 def run(
