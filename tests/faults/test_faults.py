@@ -71,8 +71,9 @@ def test_every_named_test_is_green_without_a_fault(tests, tests_of_copy):
     assert done.returncode == 0, done.stdout[-3000:]
 
 
-def all_turn_red(tests: Runner, found: list[Fault]) -> None:
+def all_turn_red(folder: Path, found: list[Fault], env: dict[str, str] | None = None) -> None:
     """Every named test is green while no fault is switched on, and red with its own."""
+    tests = Runner(folder, env, "epdem.engines", "epdem.scenes.run", "epdem.impacts.run")
     done = tests.run(*sorted({f"tests/{fault.test}" for fault in found}))
     assert done.returncode == 0, done.stdout[-3000:]
     codes = [tests.run(f"tests/{fault.test}", env={"PLANTED": str(n)}).returncode for n, fault in enumerate(found, 1)]
@@ -84,20 +85,20 @@ def all_turn_red(tests: Runner, found: list[Fault]) -> None:
 @pytest.mark.faults
 def test_planted_faults_of_the_library_turn_their_tests_red(spoilt):
     build_library(spoilt, with_switches(spoilt, OF_LIBRARY))
-    all_turn_red(Runner(spoilt), OF_LIBRARY)
+    all_turn_red(spoilt, OF_LIBRARY)
 
 
 @pytest.mark.liggghts
 @pytest.mark.faults
 def test_planted_faults_of_the_plugin_turn_their_tests_red(plugin):
-    all_turn_red(Runner(plugin, {"EPDEM_LIGGGHTS": str(program(plugin))}), OF_PLUGIN)
+    all_turn_red(plugin, OF_PLUGIN, {"EPDEM_LIGGGHTS": str(program(plugin))})
 
 
 @pytest.mark.lammps
 @pytest.mark.faults
 def test_planted_faults_of_the_plugin_for_lammps_turn_their_tests_red(spoilt):
     build_lammps(with_one_instruction_set(spoilt), with_switches(spoilt, OF_LAMMPS))
-    all_turn_red(Runner(spoilt), OF_LAMMPS)
+    all_turn_red(spoilt, OF_LAMMPS)
 
 
 @pytest.mark.yade("module")
@@ -105,4 +106,4 @@ def test_planted_faults_of_the_plugin_for_lammps_turn_their_tests_red(spoilt):
 @pytest.mark.faults
 def test_planted_faults_of_the_module_for_yade_turn_their_tests_red(spoilt):
     module = build_yade(spoilt, with_switches(spoilt, OF_YADE))
-    all_turn_red(Runner(spoilt, {"EPDEM_YADE_MODULE": str(module)}), OF_YADE)
+    all_turn_red(spoilt, OF_YADE, {"EPDEM_YADE_MODULE": str(module)})

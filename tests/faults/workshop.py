@@ -20,6 +20,9 @@ def copy_of_project(folder: Path) -> Path:
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.png"))
     for name in ("pyproject.toml", "CMakeLists.txt", "ARCHITECTURE.md", "README.md"):
         shutil.copy(ROOT / name, folder)
+    # pages of code that a fault in their source, and nothing else, makes invalid
+    compiled = [sys.executable, "-m", "compileall", "-q", "--invalidation-mode", "checked-hash", "python", "tests"]
+    subprocess.run(compiled, cwd=folder, check=True)
     return folder
 
 
@@ -86,14 +89,16 @@ def _build(folder: Path, target: str, flags: str, more: Sequence[str] = (), *, s
 
 # Read when Python starts: the installed package, which is found by a hook of its build tool, hides behind the copy.
 SITE = "import sys\nsys.meta_path[:] = [f for f in sys.meta_path if 'Scikit' not in type(f).__name__]\n"
-# Imports what is not ours once; every line of input is a run of pytest in a child that has all this already. A red test
-# need not look for its simplest example.
+# Imports what is not ours, and the modules of ours that are named, once; every line of input is a run of pytest in a
+# child that has all this already. A red test need not look for its simplest example.
 SERVER = """
-import gc, json, os, signal, sys
+import gc, importlib, json, os, signal, sys
 import h5py, hypothesis, jinja2, numpy, pandas, pint, pydantic, pytest, rich, scipy.optimize, tomlkit, typer
 from hypothesis import Phase, settings
 settings.register_profile("red", derandomize=True, deadline=None, suppress_health_check=list(hypothesis.HealthCheck),
                           phases=[Phase.explicit, Phase.generate], report_multiple_bugs=False)
+for name in sys.argv[1:]:
+    importlib.import_module(name)
 gc.collect()
 gc.freeze()
 for line in sys.stdin:
@@ -127,14 +132,15 @@ class Done:
 class Runner:
     """Runs tests of a copy against the copy, not against the installed package."""
 
-    def __init__(self, folder: Path, env: dict[str, str] | None = None):
+    def __init__(self, folder: Path, env: dict[str, str] | None = None, *sound: str):
+        """`sound`: modules of ours that no run changes."""
         self.folder = folder
         (folder / "site").mkdir(exist_ok=True)
         (folder / "site" / "sitecustomize.py").write_text(SITE)
         python = {"PYTHONPATH": f"{folder / 'site'}:{folder / 'python'}", "PYTHONDONTWRITEBYTECODE": "1"}
         ours = {k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"}  # YADE would follow it
         self.server = subprocess.Popen(
-            [sys.executable, "-c", SERVER],
+            [sys.executable, "-c", SERVER, *sound],
             cwd=folder,
             env=ours | python | {"OPENBLAS_NUM_THREADS": "1"} | (env or {}),
             stdin=subprocess.PIPE,
@@ -145,7 +151,7 @@ class Runner:
     def run(self, *words: str, only: str = "", env: dict[str, str] | None = None) -> Done:
         """Run pytest with `words`, up to a failure, and with `env` in the environment."""
         out = self.folder / "out.pytest"
-        options = ["-qx", "-pno:cacheprovider", "-pno:xdist", "-m", "", "--hypothesis-profile=red"]
+        options = ["-qx", "--assert=plain", "-pno:cacheprovider", "-pno:xdist", "-m", "", "--hypothesis-profile=red"]
         print(json.dumps([[*options, *words, "-k", only], env or {}, str(out)]), file=self.server.stdin, flush=True)
         code = int(self.server.stdout.readline())
         return Done(code, out.read_text(errors="replace"))
