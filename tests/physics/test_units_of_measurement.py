@@ -119,6 +119,11 @@ ROWS = [
     Row(pair.strain_share, {"strength1": (1.0e9, PA), "strength2": (1.3e9, PA)}, ONE),
     Row(pair.curvature_share, {"share1": (0.8, ONE), "R_star": (0.01, M), "R1": (0.02, M)}, ONE),
     Row(pair.sphere_mass, {"radius": (0.01, M), "density": (7850.0, DENSITY)}, KG),
+    Row(
+        pair.contact_conductance,
+        {"k_i": (50.0, KG + M - 3 * S), "k_j": (20.0, KG + M - 3 * S), "radius": A},
+        KG + 2 * M - 3 * S,
+    ),
     Row(printed.cavity_mean, {"x": (10.0, ONE)}, ONE),
     Row(printed.cavity_end, {"p": (2.8, ONE)}, ONE),
     Row(printed.elastic_mean, {"x": (10.0, ONE)}, ONE),

@@ -14,7 +14,7 @@ import pytest
 from epdem.base.files import write_texts
 from epdem.case.scene import SceneCase
 from epdem.engines import scene_engine
-from epdem.engines.restarts import restart_files
+from epdem.engines.frames import restart_files
 from epdem.jobs.engine import silent
 from epdem.scenes import run as scene_run
 from epdem.scenes.plan.plan import ScenePlan, plan

@@ -8,7 +8,7 @@ lists them with their functions and tests.
 # isort: off
 # fmt: off
 from .backbones import ADHESIVE, LAWS
-from .conduction import contact_conductance
+from .pair import contact_conductance
 from .johnson import Johnson
 from .pair import E_star, G_star, R_star, m_star, sphere_mass
 from .printed import (

@@ -2,13 +2,18 @@
 """Phases of a scene in steps, and how their walls slow and rest at a condition. SI."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...case.motions import Move
+from ...case.motions import FloatArray, Move, PressMove
+from ...case.parts import Parts
 from ...case.places import Vector3
 from ...case.walls import CasePhase
+from ...theory.pair import E_star
+from ...theory.viscous import damping_ratio
+from .model import Model
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
@@ -119,3 +124,42 @@ class PhaseSteps(Phase):
     def removed(self) -> list[str]:
         """Walls that go at its end."""
         return [name for name in self.gates if self.after and name not in self.after.gates]
+
+
+GAIN = 0.5  # largest n c v/F_0
+COVER = 0.4  # share of a wall that the circles of the spheres in contact with it cover
+
+
+def stable_speed(m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, move: PressMove) -> float:
+    """Highest speed [m/s] of a wall with gain GAIN, if as many of `count` spheres touch it as have room; inf without
+    dashpots. Each contact has its share of the force and c = 2 sqrt(5/6) zeta sqrt(2 E* a m)."""
+    a, b, c = np.moveaxis(triangles[move.wall], 1, 0)
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    wall = m.wall_types[scene.meshes[move.wall].material] - 1
+    found = math.inf
+    for particles in scene.filled:
+        one = m.type_of(particles.material) - 1
+        sphere, other = m.types[one], m.types[wall]
+        E = float(E_star(sphere.young_modulus, sphere.poisson_ratio, other.young_modulus, other.poisson_ratio))
+        zeta = float(damping_ratio(m.viscous[one][wall])) if m.viscous else 0.0
+        for radius in particles.radii():
+            n = max(1.0, min(count, COVER * area / (math.pi * radius**2)))
+            contact = (0.75 * move.force / n * radius / E) ** (1 / 3)
+            mass = sphere.density * 4 / 3 * math.pi * radius**3
+            damping = n * 2 * math.sqrt(5 / 6) * zeta * math.sqrt(2 * E * contact * mass)
+            found = min(found, GAIN * move.force / damping if damping else math.inf)
+    return found
+
+
+def limited(
+    m: Model, scene: Parts, triangles: Mapping[str, FloatArray], count: int, phases: Iterable[Phase]
+) -> Iterator[Phase]:
+    """The phases, in which no wall that a force drives touches spheres at more than its stable speed."""
+
+    def slow(move: Move) -> Move:
+        if move.press is None:
+            return move
+        return move.press.limited(float(f"{stable_speed(m, scene, triangles, count, move.press):.3g}"))
+
+    for phase in phases:
+        yield replace(phase, case=phase.case.model_copy(update={"move": [slow(move) for move in phase.case.move]}))

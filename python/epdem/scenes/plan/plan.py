@@ -19,10 +19,9 @@ from ...case.scene import Output, SceneCase
 from ...errors import CaseError
 from ...jobs.engine import Engine, Report
 from ...jobs.stage import Tables
-from . import meshes, servo
+from . import meshes
 from .beds import PressedBed, largest_density, pressed_beds, refuse_below_solid, refuse_heights
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
-from .heat import Heat, heat
 from .limits import (
     refuse_bodies_in_walls,
     refuse_combinations,
@@ -32,8 +31,8 @@ from .limits import (
     refuse_steps,
     refuse_walls_at_faces,
 )
-from .model import Model, model
-from .phases import LOOKED, NO_VOID, NOT_REACHED, REACHED, Phase, PhaseSteps
+from .model import Heat, Model, heat, model
+from .phases import LOOKED, NO_VOID, NOT_REACHED, REACHED, Phase, PhaseSteps, limited
 from .quantities import WORKS
 from .timestep import time_step, unstable_steps
 
@@ -424,7 +423,7 @@ def plan(case: SceneCase) -> ScenePlan:
 
     count = sum(f.count for f in filled) + len(scene.table) + len(scene.later)
     planned = _phases(scene, rows, every, dt, given)
-    phases = tuple(servo.limited(contact_model, scene, triangles, count, planned))
+    phases = tuple(limited(contact_model, scene, triangles, count, planned))
     whole = phases[-1].end // every
 
     def interval(count: int, rows: int = max(rows, whole)) -> int:

@@ -16,11 +16,10 @@ from ...laws.library import Law
 from ...laws.strengths import LawSpec
 from ...theory.adhesion import plastic_work
 from ...theory.backbones import JKR
-from ...theory.conduction import contact_conductance
 from ...theory.numerics import gauss
+from ...theory.pair import contact_conductance
 from ..plan import quantities
-from ..plan.heat import Heat
-from ..plan.model import pair_law
+from ..plan.model import Heat, pair_law
 from ..plan.plan import ScenePlan
 from ..plan.quantities import PARTICLES, ROWS, SPINS, STRAINS, TEMPERATURE
 

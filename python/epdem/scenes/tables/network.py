@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
 from ...jobs.stage import Tables
-from ...theory.conduction import contact_conductance
+from ...theory.pair import contact_conductance
 from ..plan.plan import ScenePlan
 from .columns import Array, bodies
 
