@@ -17,8 +17,8 @@ from ..errors import CaseError
 from ..laws import library
 from ..laws.library import Law
 from ..laws.strengths import LawNumbers, LawSpec, default_numbers, find_law
-from ..theory import law as theory_law
 from ..theory import pair
+from ..theory.backbone import Law as Theory
 from ..theory.backbones import ADHESIVE, LAWS, Backbone
 from ..theory.numerics import Real
 
@@ -136,7 +136,7 @@ class Experiment:
         body, target = self.body, self.target
         return body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio
 
-    def theory(self) -> theory_law.Law:
+    def theory(self) -> Theory:
         """The law in the theory."""
         return self.law.theory(E_star=self.E_star, R_star=self.R_star, radius=self.body.radius)
 

@@ -8,10 +8,10 @@ from typing import Any, Protocol
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
+from ..theory.backbone import Law
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from ..theory.indentation import PYRAMID, Indentation, mean_pressure
 from ..theory.indentation import yield_stress as yield_stress_of
-from ..theory.law import Law
 from ..theory.numerics import Array, Real, bisect
 from ..theory.pair import HARDENING, E_star, curvature_share, strain_share
 

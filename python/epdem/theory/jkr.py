@@ -3,7 +3,7 @@
 
 from . import adhesion
 from .adhesive_curve import AdhesiveCurve, Numbers
-from .law import Law
+from .backbone import Law
 from .numerics import Array
 from .restitution import Impact
 
