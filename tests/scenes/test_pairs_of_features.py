@@ -30,7 +30,7 @@ from epdem.case.keys import keys_of
 from epdem.case.scene import SceneCase, load, parse
 from epdem.engines import SCENES, scene_engine
 from epdem.engines.frames import Frames
-from epdem.engines.liggghts import launcher, resume
+from epdem.engines.liggghts import deck, launcher
 from epdem.engines.liggghts import tables as liggghts_tables
 from epdem.errors import CaseError, EngineError
 from epdem.laws.strengths import find_law
@@ -517,6 +517,6 @@ def test_a_drawn_scene_goes_on_from_a_restart_file_to_the_same_bits(chosen, rank
     *steps, _ = restart_steps(place)
     for step in steps[-2:]:
         (place / f"particles.{p.steps}.bin").unlink()
-        resume.write_resume(p, place, step)
+        deck.write_resume(p, place, step)
         launcher.run("in.resume", place, ranks=ranks, append=True)
         assert liggghts_tables.particles(last).equals(whole)

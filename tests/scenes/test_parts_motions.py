@@ -9,7 +9,7 @@ from parts_cases import BED, BOX, FLOOR, bead, driven, flat, linear, mm, parts, 
 from scene_runs import HOSTS, LAMMPS, LIGGGHTS, PRESSES, YADE, assert_goes_on, ran, run, write_case
 
 from epdem.case.scene import parse
-from epdem.engines.liggghts import resume
+from epdem.engines.liggghts import deck
 from epdem.engines.liggghts import tables as tables
 from epdem.scenes.judge.warnings import planned_warnings
 from epdem.scenes.plan.plan import plan
@@ -186,5 +186,5 @@ def test_a_phase_that_is_not_recorded_has_rows_and_no_frames(engine, tmp_path):
     if engine == "liggghts":
         out = tmp_path / "False/out"
         assert not {f"particles.{k * every}.bin" for k in (3, 4, 5)} & {p.name for p in out.iterdir()}
-        resume.write_resume(outcome.plan, out, 4 * every)
+        deck.write_resume(outcome.plan, out, 4 * every)
         assert "dump_modify particles every 1000000000" in (out / "in.resume").read_text()

@@ -20,9 +20,9 @@ from test_lean import CASES, small
 from epdem.base.files import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
-from epdem.engines import restarts
+from epdem.engines import frames
 from epdem.engines.frames import Frames
-from epdem.engines.liggghts import launcher, resume
+from epdem.engines.liggghts import deck, launcher
 from epdem.engines.liggghts import tables as tables
 from epdem.errors import CaseError
 from epdem.scenes.plan.plan import plan
@@ -92,7 +92,7 @@ def test_ctrl_c_stops_liggghts_with_all_its_ranks_and_the_run_can_be_continued(r
     assert not children(str(out))
     assert process.returncode != 0
     assert not (out / "results.h5").exists()
-    assert restarts.whole_restarts(out, out / launcher.OUT)[-1] > 0
+    assert frames.whole_restarts(out, out / launcher.OUT)[-1] > 0
 
 
 class Enough(Exception):
@@ -204,7 +204,7 @@ def test_without_a_restart_file_nothing_is_continued(tmp_path):
     assert not (tmp_path / "out").exists()
     p = write_deck(load(path), tmp_path / "empty")
     with pytest.raises(CaseError, match="no restart file"):
-        restarts.choose(Frames(p, tmp_path / "empty", tables.kinds(p)), tmp_path / "empty" / launcher.OUT)
+        frames.choose(Frames(p, tmp_path / "empty", tables.kinds(p)), tmp_path / "empty" / launcher.OUT)
 
 
 def steps_of(folder: Path, pattern: str) -> list[int]:
@@ -217,7 +217,7 @@ def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(
     _, folder = hopper
     path, out = tmp_path / "case.toml", tmp_path / "out"
     shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
-    p, newest = plan(load(path)), restarts.whole_restarts(out, out / launcher.OUT)[-1]
+    p, newest = plan(load(path)), frames.whole_restarts(out, out / launcher.OUT)[-1]
     lost = max(step for step in steps_of(out, "particles.*.bin") if step < newest and step % p.frames == 0)
     older = newest - p.frames  # a phase counts the steps between restart files from its begin
     for step in steps_of(out, "restart.*.bin"):
@@ -231,7 +231,7 @@ def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(
     else:
         frame.write_bytes(frame.read_bytes()[:-100])
     if place.startswith("after"):
-        assert restarts.choose(Frames(p, out, tables.kinds(p)), out / launcher.OUT) == (older, [])
+        assert frames.choose(Frames(p, out, tables.kinds(p)), out / launcher.OUT) == (older, [])
         return
     outcome = run(path, out=out, resume=True, force=True)  # a file that was changed may be the user's
     assert [w for w in outcome.warnings if f"frames of step {lost} are missing or not whole" in w]
@@ -246,7 +246,7 @@ def test_restart_files_are_kept_until_the_engine_has_gone_on_after_a_later_one(t
     for step in (100, 200, 300, 400):
         (tmp_path / f"restart.{step}.bin").touch()
     for step, kept in ((100, [100, 200, 300, 400]), (250, [200, 300, 400]), (300, [200, 300, 400]), (900, [400])):
-        restarts.prune(tmp_path, step)
+        frames.prune(tmp_path, step)
         assert steps_of(tmp_path, "restart.*.bin") == kept
 
 
@@ -277,7 +277,7 @@ def continued(poured, begin: int, tmp_path):
     p, folder, _ = poured
     for path in (folder / "setup.in", folder / launcher.OUT, folder / f"restart.{begin}.bin", *folder.glob("*.data")):
         (tmp_path / path.name).write_bytes(path.read_bytes())
-    resume.write_resume(p, tmp_path, begin)
+    deck.write_resume(p, tmp_path, begin)
     launcher.run("in.resume", tmp_path)
     return tables.particles(Frames(p, tmp_path, tables.kinds(p), range(begin + 1)))
 

@@ -21,9 +21,8 @@ from ..scenes.plan.phases import Phase
 from ..scenes.plan.plan import Resumed, ScenePlan
 from ..scenes.tables.columns import named_rows, with_first_works
 from . import log
-from .frames import Frames
+from .frames import Frames, choose, pruning
 from .input_script import impact_data
-from .restarts import choose, pruning
 
 T = TypeVar("T")
 
@@ -39,10 +38,9 @@ class Host(Engine[Any, Any]):
     scripts = ("in.impact", "in.scene")  # names of the decks
     # patterns of files that an earlier run of a scene may have left in the folder
     leftovers = "particles.*.* contacts*.*.* wall_contacts.*.txt stress_*.*.* picture.*.ppm restart.*.bin in.resume"
-    scene_deck: ModuleType  # deck and files of a scene
+    scene_deck: ModuleType  # deck and files of a scene; with Feature.RESTART write_resume
     # trajectory of impacts; kinds of frames of a scene, from which particles, contact_table and wall_table; rows
     tables: ModuleType
-    resumed: ModuleType  # of an engine with Feature.RESTART: write_resume
 
     def missing(self) -> str | None:
         reason: str | None = self.launcher.missing()
@@ -103,7 +101,7 @@ class Host(Engine[Any, Any]):
         frames = Frames(begun, folder, self.tables.kinds(begun))
         step, lost = choose(frames, out)
         written = frames.whole_at(step)
-        script = self.resumed.write_resume(job, folder, step)
+        script = self.scene_deck.write_resume(job, folder, step)
         self.start(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
         for path, content in written.items():
             path.write_bytes(content)

@@ -13,7 +13,7 @@ from ...jobs.engine import Feature
 from ...scenes.plan.model import Model
 from ..host import Host
 from ..input_script import impact_model
-from . import deck, launcher, resume, tables
+from . import deck, launcher, tables
 from .deck import ImpactDeck
 from .words import of_type, options
 
@@ -25,7 +25,7 @@ class Lammps(Host):
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
     left_out: ClassVar[dict[str, str]] = {"sort_interval": "LAMMPS sorts the spheres in memory at intervals of its own"}
-    launcher, scene_deck, tables, resumed = launcher, deck, tables, resume
+    launcher, scene_deck, tables = launcher, deck, tables
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
         | {Feature.RESTART, Feature.TANGENTIAL_DASHPOT}

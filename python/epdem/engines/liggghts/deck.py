@@ -2,8 +2,9 @@
 """The LIGGGHTS decks of impacts and of scenes: all values of the templates."""
 
 import math
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -17,8 +18,11 @@ from ...scenes.plan.meshes import stl_text
 from ...scenes.plan.model import Model
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.tables.columns import GROWTH, columns_of_spheres
+from .. import log
+from ..frames import later, phase_at
 from ..host import refuse_narrow
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, finite, heat_words, row_words
+from . import launcher
 from .primitives import Primitive, WallLoad, loads, primitives, tubes
 from .properties import HARD, SOFT, Property, of_model, tangential, wear
 from .scene_parts import DeckPhase, InsertFix, SurfaceMesh, insertions, phases, surface_meshes
@@ -242,3 +246,35 @@ def files(p: ScenePlan) -> dict[str, str]:
     texts |= data_files(p)
     formulas = tubes(p)
     return texts | {f"{name}.stl": stl_text(name, x) for name, x in p.triangles.items() if name not in formulas}
+
+
+def _going_on(d: SceneDeck, phase: int, inserted: dict[str, int]) -> Iterator[InsertFix]:
+    """The insertions of a run that goes on in a phase, without streams that have ended: LIGGGHTS refuses these. A
+    stream of an earlier phase goes on in this one."""
+    names = [part.run.name for part in d.phases]
+    for f in d.insertions:
+        if f.fill.rate is None:
+            yield f
+        elif inserted.get(f"fill{f.number}", 0) < f.fill.count:
+            number = min(max(names.index(f.fill.phase), phase), len(names) - 1)
+            yield replace(f, fill=replace(f.fill, phase=names[number]))
+
+
+def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
+    """in.resume, which continues from the restart file of `step`."""
+    d = deck(p)
+    number, begin = phase_at(p, folder / launcher.OUT, step)
+    comes = False  # spheres that come with this phase and are not in the restart file
+    if number < len(p.phases):
+        part = d.phases[number]
+        at_once = [f for f in d.insertions if f.fill.rate is None and f.fill.phase == part.run.name]
+        comes = step == begin and bool(part.bodies or at_once)
+        gone = step - begin
+        stop = later(part.stop, folder / launcher.OUT, step, gone, p.every)
+        rest = replace(part, steps=part.steps - gone, stop=stop)
+        d = replace(d, phases=(*d.phases[:number], rest, *d.phases[number + 1 :]))
+    path = folder / "in.resume"
+    going_on = tuple(_going_on(d, number, log.inserted(folder / launcher.OUT, step)))
+    continued = replace(d, insertions=going_on, from_restart=f"restart.{step}.bin", resumed_phase=number, comes=comes)
+    path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")
+    return path

@@ -16,7 +16,7 @@ from ...scenes.plan.model import Model
 from .. import log
 from ..host import Host
 from ..input_script import impact_model
-from . import deck, launcher, resume, tables
+from . import deck, launcher, tables
 from .deck import ImpactDeck, contact_words
 
 
@@ -30,7 +30,7 @@ class Liggghts(Host):
     mpi_package = "apt-get install openmpi-bin"
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
     left_out: ClassVar[dict[str, str]] = {"balance": "the borders of ranks in LIGGGHTS do not move"}
-    launcher, scene_deck, tables, resumed = launcher, deck, tables, resume
+    launcher, scene_deck, tables = launcher, deck, tables
 
     def parts(self) -> list[Path]:
         found = (paths.native("libepdem_liggghts.so"), paths.launcher())
