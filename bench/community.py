@@ -26,9 +26,9 @@ from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, c
 
 from epdem.case.scene import SceneCase, parse
 from epdem.case.toml import LoadedCase
+from epdem.engines.frames import whole_restarts
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
-from epdem.engines.restarts import whole_restarts
 from epdem.errors import CaseError
 from epdem.scenes.judge.summary import SceneOutcome
 from epdem.scenes.run import run as run_scene

@@ -17,8 +17,8 @@ import numpy as np
 
 from epdem.case.impact import load
 from epdem.engines import engine
-from epdem.impacts.comparison import compare
 from epdem.impacts.experiment import Experiment, bodies, pair_of
+from epdem.impacts.measurement import compare
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run_plan

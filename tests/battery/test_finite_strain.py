@@ -12,9 +12,8 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
-from epdem.impacts.comparison import compare
 from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
+from epdem.impacts.measurement import compare, measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.laws.library import Law

@@ -12,10 +12,9 @@ from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError
-from epdem.impacts.comparison import compare
 from epdem.impacts.engine import check_features
 from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
+from epdem.impacts.measurement import compare, measure
 from epdem.impacts.plan import plan, search
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run

@@ -16,10 +16,9 @@ from epdem.engines import engine
 from epdem.engines.embedded import Embedded
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
-from epdem.impacts.comparison import CHECKED, compare
 from epdem.impacts.engine import Trajectory
 from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
+from epdem.impacts.measurement import CHECKED, compare, measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from epdem.cli.main import app
 from epdem.engines import engine
-from epdem.impacts import cost
+from epdem.impacts import prediction_report as report
 from epdem.impacts.run import run
 from marks import thorough
 
@@ -53,7 +53,7 @@ def test_an_error_is_met_with_a_dashpot(error, tmp_path):
 def test_the_command_prints_steps_and_cost_and_judges_by_the_requested_error(tmp_path, monkeypatch):
     """Cost: steps for the same time over those of hertz, times the ratio per step of the table."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cost, "step_times", lambda: {("embedded", "thornton"): 0.2, ("yade", "thornton"): 9.0})
+    monkeypatch.setattr(report, "step_times", lambda: {("embedded", "thornton"): 0.2, ("yade", "thornton"): 9.0})
 
     def printed(command, *words):
         done = CliRunner().invoke(app, [command, str(STEEL), "--error", "1e-3", *words])
@@ -70,6 +70,6 @@ def test_the_command_prints_steps_and_cost_and_judges_by_the_requested_error(tmp
 
 
 def test_the_table_of_step_times_has_every_law_in_every_host():
-    found = cost.step_times()
+    found = report.step_times()
     assert set(found) == {(host, law) for host in ("embedded", "liggghts", "lammps", "yade") for law in LAWS + ADHESIVE}
     assert all(0.01 < ratio < 100 for ratio in found.values())

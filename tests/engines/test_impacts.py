@@ -16,8 +16,7 @@ from cli.calls import call
 from epdem.case.impact import Check
 from epdem.engines import engine
 from epdem.impacts import store
-from epdem.impacts.comparison import CHECKED, compare
-from epdem.impacts.measurement import measure
+from epdem.impacts.measurement import CHECKED, compare, measure
 from epdem.impacts.run import run as run_case
 
 

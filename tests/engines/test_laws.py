@@ -6,8 +6,7 @@ import pytest
 from hosts import ADHESIVE, CLASSES, EMBEDDED, LAMMPS, LAWS, LIGGGHTS, TARGETS, YADE, largest_share, on, prepared, run
 
 from epdem.case.impact import Check
-from epdem.impacts.comparison import compare
-from epdem.impacts.measurement import measure
+from epdem.impacts.measurement import compare, measure
 
 V_Y = 0.559430455498519  # speed at which the peak pressure reaches 2.8 Y [m/s], table of the chapter
 STEPWISE = [LAMMPS, YADE, CLASSES]

@@ -21,8 +21,8 @@ from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
 from ..engines.citations import Citations, citations
 from ..errors import CaseError
-from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment
+from ..impacts.measurement import UNITS
 from ..impacts.plan import plan as plan_impacts
 from ..impacts.prediction import predict as predict_experiment
 from ..impacts.run import Outcome

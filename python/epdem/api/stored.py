@@ -10,7 +10,7 @@ import pandas as pd
 from ..base import tables as h5
 from ..errors import CaseError
 from ..impacts import store
-from ..impacts.comparison import UNITS
+from ..impacts.measurement import UNITS
 from ..scenes.tables import results as scene_results
 from ..scenes.tables.columns import units as scene_units
 from ..studies.sweep import folder as sweep_folder

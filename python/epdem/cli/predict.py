@@ -66,22 +66,22 @@ def predict(
 
 def _time_steps(experiments: "list[Experiment]", error: float, as_json: bool) -> typer.Exit:
     """Print the time steps for a target error, found with the embedded engine."""
-    from ..impacts import cost
     from ..impacts.plan import matched_step
     from ..impacts.prediction import predict as predict_experiment
+    from ..impacts.prediction_report import costs, sentence
 
     documents, lines = [], []
     with status() as progress:
         for x in experiments:
             progress(f"{x.name}, {x.law.name}")
             f = matched_step(x, predict_experiment(x), error)
-            share, found = f.shares(), cost.costs(x, f.time_step, error)
+            share, found = f.shares(), costs(x, f.time_step, error)
             documents.append({"case": x.name, "law": x.law.name, **asdict(f), "share": share, "cost": found})
             lines.append(
                 f"{x.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
                 f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
                 f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
                 f"{share['hertz']:.2%} of the elastic contact time\n"
-                f"  {cost.sentence(found)}"
+                f"  {sentence(found)}"
             )
     return answer(documents[0] if len(documents) == 1 else documents, lines, as_json)

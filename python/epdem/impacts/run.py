@@ -22,10 +22,9 @@ from ..errors import CaseError
 from ..jobs.engine import require
 from ..jobs.stage import Inputs, Stage, Tables, inputs, stage
 from . import store
-from .comparison import CHECKED, compare
 from .engine import ImpactEngine, check_plan
 from .experiment import experiment
-from .measurement import measure, sample_impacts
+from .measurement import CHECKED, compare, measure, sample_impacts
 from .plan import Plan, plan
 from .prediction import Prediction, predict
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base import tables as h5
-from .comparison import UNITS
+from .measurement import UNITS
 
 
 @dataclass

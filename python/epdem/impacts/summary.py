@@ -8,10 +8,9 @@ import pandas as pd
 from rich.table import Table
 
 from ..base.terminal import Shown, frame_table, warned
-from .comparison import CHECKED
-from .cost import costs, sentence
+from .measurement import CHECKED
 from .prediction import predict
-from .prediction_report import plain, yielding
+from .prediction_report import costs, plain, sentence, yielding
 from .run import Outcome
 
 # heads of the table of a run, by column

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.files import claim
 from ..impacts import oblique
-from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment
+from ..impacts.measurement import CHECKED
 from ..impacts.prediction import Prediction, predict
 from ..impacts.run import Outcome
 from ..theory.printed import wu_restitution

@@ -12,8 +12,8 @@ from ..base.paths import product_hash
 from ..base.readable import in_words
 from ..engines import texts_with_reasons
 from ..engines.citations import citations
-from ..impacts.comparison import CHECKED, UNITS
 from ..impacts.experiment import Body, Experiment
+from ..impacts.measurement import CHECKED, UNITS
 from ..impacts.plan import Plan
 from ..impacts.prediction_report import yielding
 from ..impacts.run import Outcome

@@ -22,8 +22,8 @@ from ..engines.host import Host
 from ..engines.liggghts.engine import Liggghts
 from ..engines.log import loop_seconds
 from ..errors import EngineError
-from ..impacts.comparison import CHECKED
 from ..impacts.experiment import experiment, pair_of
+from ..impacts.measurement import CHECKED
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
 from ..jobs.engine import require

@@ -16,8 +16,8 @@ from ..case.toml import error_context
 from ..engines import ENGINES, ImpactEngine
 from ..engines.yade.engine import Yade
 from ..errors import CaseError, EngineError
-from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment, experiment
+from ..impacts.measurement import CHECKED
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run
 from .invariance.check import examine

@@ -4,7 +4,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from ..impacts.comparison import UNITS
+from ..impacts.measurement import UNITS
 from ..report import pages as common
 from ..report.chart import GREY, Axis, Chart, Panel, Series
 from ..report.page import Facts, Page, Part, Rows

@@ -11,8 +11,8 @@ import pandas as pd
 
 from ..base.files import claim
 from ..base.tables import write_csv
-from ..impacts.comparison import compare
 from ..impacts.engine import ImpactEngine
+from ..impacts.measurement import compare
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
 from ..impacts.run import run_plan

@@ -11,7 +11,7 @@ from ...base.tables import write_csv
 from ...case.parts import MEASURES
 from ...case.scene import parse
 from ...case.units import to_si
-from ...impacts.comparison import UNITS
+from ...impacts.measurement import UNITS
 from ...scenes.judge.checks import CHECKS
 from ...scenes.tables.columns import UNITS as SCENE_UNITS
 from ...scenes.tables.columns import unit_of_load
