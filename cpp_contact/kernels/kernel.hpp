@@ -294,8 +294,8 @@ constexpr Kernels all() noexcept {
 #define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels);
   EPDEM_LAWS(EPDEM_FILL)
 #undef EPDEM_FILL
-  kernels.spheres = {half_step,         any_moved,       near_sphere, near_triangle<true>, near_triangle<false>,
-                     next_pairs<false>, next_pairs<true>};
+  kernels.spheres = {half_step,         any_moved,        near_sphere, near_triangle<true>, near_triangle<false>,
+                     next_pairs<false>, next_pairs<true>, close_sums};
   return kernels;
 }
 

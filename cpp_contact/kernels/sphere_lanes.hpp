@@ -196,5 +196,45 @@ int next_pairs(PairSearch& s, int* i, int* j, int* place) {
   return found;
 }
 
+typedef double Two __attribute__((vector_size(16)));
+
+/// BodySums of the spheres whose rows row(l) names.
+template <class RowOf>
+EPDEM_INLINE Lanes close_sums_of(const BodyRows r, RowOf row) {
+  static_assert(dent_sums == 6 && body_values == 4 && memory_values == 5);
+  const auto four = [=](const double* from, int stride) __attribute__((always_inline)) {
+    return columns([=](int l) __attribute__((always_inline)) { return load<Row>(from + stride * row(l)); });
+  };
+  const auto put = [=](double* to, int stride, const Columns& of) __attribute__((always_inline)) {
+    rows(of, [=](int l, const Row& numbers) __attribute__((always_inline)) { store(to + stride * row(l), numbers); });
+  };
+  const Columns dents = four(r.sums, dent_sums), last_dents = four(r.sums + 2, dent_sums);
+  const Columns kept = four(r.memory, r.memory_stride), last_kept = four(r.memory + 1, r.memory_stride);
+  BodyMemory<Lanes> memory{kept.a, kept.b, kept.c, kept.d, last_kept.d};
+  const Dent<Lanes> sums{dents.a, dents.b, dents.c, dents.d, last_dents.c, last_dents.d};
+  const BodySums<Lanes> now = sums_of_step(sums, memory);
+  put(r.bodies, body_values, {now.growth, now.area, now.pressure, now.parted});
+  put(r.memory, r.memory_stride, {memory.pressure, memory.full, memory.parted, memory.last});
+  put(r.memory + 1, r.memory_stride, {memory.full, memory.parted, memory.last, memory.old});
+  for (int l = 0; l < lane_count; ++l)
+    for (int c = 0; c < dent_sums; c += 2) store(r.sums + dent_sums * row(l) + c, Two{});
+  return now.growth;
+}
+
+double close_sums(const BodyRows& rows) {
+  const BodyRows r = rows;
+  Lanes largest{};
+  long k = 0;
+  for (; k + lane_count <= r.n; k += lane_count)
+    largest = max(largest, close_sums_of(r, [=](int l) __attribute__((always_inline)) { return k + l; }));
+  const long last = r.n - 1;  // stands in the lanes behind it once more
+  if (k <= last)
+    largest = max(largest,
+                  close_sums_of(r, [=](int l) __attribute__((always_inline)) { return k + l < last ? k + l : last; }));
+  double most = 0.0;
+  for (int l = 0; l < lane_count; ++l) most = largest[l] > most ? largest[l] : most;
+  return most;
+}
+
 }  // namespace
 }  // namespace epdem::kernels

@@ -43,6 +43,13 @@ struct PairSearch {
   int pass = 0;
 };
 
+/// With compaction: rows of n spheres, of dent_sums, body_values and memory_values numbers.
+struct BodyRows {
+  int n;
+  double *sums, *bodies, *memory;
+  int memory_stride;  // from row to row of the memory
+};
+
 struct SphereKernels {
   /// v += dt_force F / (mass_factor m) and omega += dt_torque T / (R^2 m), then x += dt v.
   void (*half_step)(const HalfStep&);
@@ -61,6 +68,8 @@ struct SphereKernels {
   /// The same; pairs that do not overlap, but meet by the factor, have the complement of their place. With compaction
   /// they meet where the growth of both closes the gap, or where they were in contact one pass before.
   int (*next_near_pairs)(PairSearch&, int* i, int* j, int* place);
+  /// Gives each sphere the BodySums that follow from its sums, sets the sums to 0 and returns the largest growth.
+  double (*close_sums)(const BodyRows&);
 };
 
 }  // namespace epdem::kernels

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <unordered_map>
 
@@ -106,21 +105,17 @@ void FixHistory::add_works(const kernels::Block& b, int n, const Models& models,
   }
 }
 
-void FixHistory::close_growth(bool counts) {
+void FixHistory::close_growth(bool counts, double (*close)(const kernels::BodyRows&)) {
   bodies_.resize(long(body_values) * rows_);
   largest_ = growth_reach;
   if (counts) {
-    for (int i = 0; i < atom->nlocal; ++i) {
-      const double* const dents = &dents_[dent_sums * long(i)];
-      const BodySums<double> now = sums_of_step(dents, array_atom[i][largest_pressure], array_atom[i] + body_memory);
-      array_atom[i][largest_pressure] = now.pressure;
-      std::memcpy(&bodies_[long(body_values) * i], &now, sizeof now);
-    }
+    const int n = atom->nlocal;
+    largest_ = n > 0 ? close({n, dents_.data(), bodies_.data(), array_atom[0] + body_memory, columns}) : 0.0;
     comm->forward_comm(this);
-    largest_ = 0.0;
-    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) largest_ = std::max(largest_, bodies_[long(body_values) * i]);
+    for (long i = n; i < n + atom->nghost; ++i) largest_ = std::max(largest_, bodies_[body_values * i]);
+  } else {
+    std::fill_n(dents_.begin(), dent_sums * long(atom->nlocal), 0.0);
   }
-  std::fill_n(dents_.begin(), dent_sums * long(atom->nlocal), 0.0);
 }
 
 void FixHistory::note_dents(const kernels::Block& b, int n, bool wall) {

@@ -49,7 +49,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double>& page() { return page_; }
 
   /// Energies are requested: columns plastic work, elastic energy, loaded contacts, work lost by friction, elastic
-  /// energy of friction, work lost by adhesion in its jumps. With compaction: largest pressure, BodyMemory.
+  /// energy of friction, work lost by adhesion in its jumps. With compaction: BodyMemory.
   enum Column {
     plastic_work,
     elastic_energy,
@@ -57,7 +57,6 @@ class FixHistory : public LAMMPS_NS::Fix {
     friction_work,
     friction_energy,
     adhesive_work,
-    largest_pressure,
     body_memory,
     columns = body_memory + memory_values
   };
@@ -83,7 +82,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Compaction: growth of each atom over its radius and area of its contacts, by the dents of the evaluation before.
   /// Walls come after the pairs, so that the sums close at the start of the next evaluation. An evaluation that does
   /// not count sums up the same dents once more, so that a restart file needs no sums. Collective.
-  void close_growth(bool counts);
+  void close_growth(bool counts, double (*close)(const kernels::BodyRows&));
   const double* bodies() const { return bodies_.data(); }
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
   double factor() const { return touch_factor(largest_); }

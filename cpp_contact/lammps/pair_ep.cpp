@@ -239,7 +239,7 @@ void PairEp::compute(int eflag, int vflag) {
   if (pass_.work) history_->open_energies(atom->nlocal);
   if (heat_) heat_->open();
   if (models_.compaction) {
-    history_->close_growth(counts);
+    history_->close_growth(counts, spheres_->close_sums);
     if (counts) history_->widen();
   }
   if (list->inum > 0) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -31,6 +30,7 @@ class Growth {
     bodies_ = find(lmp, bodies_name, body_values, model.c_str());
     memory_ = find(lmp, memory_name, memory_values, model.c_str());
     sums_ = find(lmp, sums_name, dent_sums, model.c_str());
+    kernels_ = sphere_kernels(lmp);
     if (bodies_ && memory_ && sums_) return;
     const std::string text = "model " + model + ": compaction on of a wall needs it for the pair style as well";
     lmp->error->all(FLERR, text.c_str());
@@ -40,18 +40,10 @@ class Growth {
   void close(const LAMMPS_NS::Atom& atom) {
     const int nlocal = atom.nlocal;
     if (nlocal == 0 && atom.nghost == 0) return static_cast<void>(bodies_->do_forward_comm());
-    double *sums = sums_->array_atom[0], *body = bodies_->array_atom[0], *kept = memory_->array_atom[0];
-    double largest = 0.0;
-    for (int i = 0; i < nlocal; ++i, sums += dent_sums, body += body_values, kept += memory_values) {
-      const BodySums<double> now = sums_of_step(sums, body[2], kept);
-      std::memcpy(body, &now, sizeof now);
-      largest = std::max(largest, now.growth);
-      std::fill_n(sums, dent_sums, 0.0);
-    }
+    double *const bodies = bodies_->array_atom[0], *const memory = memory_->array_atom[0];
+    largest_ = kernels_->close_sums({nlocal, sums(), bodies, memory, memory_values});
     bodies_->do_forward_comm();
-    const double* const all = of_all();
-    for (long i = nlocal; i < nlocal + atom.nghost; ++i) largest = std::max(largest, all[body_values * i]);
-    largest_ = largest;
+    for (long i = nlocal; i < nlocal + atom.nghost; ++i) largest_ = std::max(largest_, bodies[body_values * i]);
   }
 
   BodySums<double> of(int body) const { return sums_of(of_all(), body); }
@@ -85,6 +77,7 @@ class Growth {
   LAMMPS_NS::FixPropertyAtom* bodies_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* memory_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* sums_ = nullptr;
+  const kernels::SphereKernels* kernels_ = nullptr;
   double largest_ = 0.0;
 };
 

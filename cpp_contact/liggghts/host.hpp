@@ -19,6 +19,7 @@
 #include "contact_models.h"
 #include "epdem/vec.hpp"
 #include "fix_wall_gran_base.h"
+#include "kernels/spheres.hpp"
 #include "pair_gran_base.h"
 
 namespace epdem::liggghts {
@@ -43,6 +44,9 @@ std::vector<double> smallest_radii(LAMMPS_NS::LAMMPS* lmp);
 
 /// Makes LIGGGHTS look at bodies up to this factor of the sum of their radii.
 void register_contact_distance(LAMMPS_NS::LAMMPS* lmp, double factor);
+
+/// The kernels of the processor; none for LIGGGHTS-PFM, which has no compaction.
+const kernels::SphereKernels* sphere_kernels(LAMMPS_NS::LAMMPS* lmp);
 
 /// Prints a line on the screen and into the log, on the first rank.
 inline void say(const LAMMPS_NS::LAMMPS* lmp, const std::string& line) {

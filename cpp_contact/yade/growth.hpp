@@ -51,8 +51,13 @@ class EpGrowth : public GlobalEngine {
         // i is the first sphere
         epdem::add_dent(sums, phys->wall != 0 || contact->getId1() == id ? dents.i : dents.j);
       }
-      static_assert(std::tuple_size_v<EpMemory> == epdem::memory_values);
-      const epdem::BodySums<double> now = epdem::sums_of_step(sums, state->pressure, state->memory.data());
+      epdem::Dent<double> dents;
+      epdem::BodyMemory<double> memory;
+      static_assert(sizeof dents == sizeof sums && sizeof memory == sizeof state->memory);
+      std::memcpy(&dents, sums, sizeof dents);
+      std::memcpy(&memory, state->memory.data(), sizeof memory);
+      const epdem::BodySums<double> now = epdem::sums_of_step(dents, memory);
+      std::memcpy(state->memory.data(), &memory, sizeof memory);
       state->growth = now.growth;
       state->dentedArea = now.area;
       state->pressure = now.pressure;

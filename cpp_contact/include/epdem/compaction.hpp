@@ -79,12 +79,14 @@ struct BodySums {
 inline constexpr int body_values = sizeof(BodySums<double>) / sizeof(double);
 
 /// What a body keeps beside BodySums. Zeros: a new body.
+template <class T>
 struct BodyMemory {
-  double full;       // N [J]
-  double parted[3];  // 1 - Q of the sums of the last steps, the last first
+  T pressure;           // largest P so far [Pa]
+  T full;               // N [J]
+  T parted, last, old;  // 1 - Q of the sums of the last three steps
 };
 
-inline constexpr int memory_values = sizeof(BodyMemory) / sizeof(double);
+inline constexpr int memory_values = sizeof(BodyMemory<double>) / sizeof(double);
 
 /// What a contact adds to the sums of a body.
 template <class T>
@@ -171,27 +173,19 @@ struct Growing {
   void keep() const noexcept {}
 };
 
-/// What follows from the sums of a body in a step. A body without contacts forgets its largest pressure so far and the
-/// values of its BodyMemory.
-inline BodySums<double> sums_of_step(const double* sums, double pressure, double* of_body) noexcept {
-  const bool touches = sums[0] > 0.0 || sums[2] > 0.0 || sums[3] > 0.0;
-  if (!touches) {
-    ::memset(of_body, 0, sizeof(BodyMemory));
-    return BodySums<double>{};
-  }
-  BodyMemory memory;
-  ::memcpy(&memory, of_body, sizeof memory);
-  memory.full = max(memory.full, sums[4]);
-  double parted = 0.0;
-  if (memory.full > sums[5]) {
-    const double root = sqrt(max(0.0, sums[5] / memory.full));
-    parted = 1.0 - root * sqrt(root);
-  }
-  memory = {memory.full, {parted, memory.parted[0], memory.parted[1]}};
-  ::memcpy(of_body, &memory, sizeof memory);
-  const double* const p = memory.parted;
-  return {growth(sums[0], sums[1]), sums[2], max(pressure, sums[3]),
-          min(1.0, max(0.0, 2.5 * p[0] - 2.0 * p[1] + 0.5 * p[2]))};
+/// What follows from the sums of a body in a step. A body without contacts forgets its memory.
+template <class T>
+EPDEM_INLINE BodySums<T> sums_of_step(const Dent<T>& sums, BodyMemory<T>& memory) noexcept {
+  const T zero{}, one = constant<T>(1.0), full = max(memory.full, sums.full);
+  const auto falls = full > sums.held;
+  const T root = sqrt(max(zero, select(falls, sums.held, one) / select(falls, full, one)));
+  memory = {max(memory.pressure, sums.pressure), full, 1.0 - root * sqrt(root), memory.parted, memory.last};
+  const T parted = 2.5 * memory.parted - 2.0 * memory.last + 0.5 * memory.old;
+  BodySums<T> now{growth(sums.cover, sums.volume), sums.area, memory.pressure, min(one, max(zero, parted))};
+  const auto touches = (sums.cover > 0.0) | (sums.area > 0.0) | (sums.pressure > 0.0);
+  keep_where<T>(touches, memory);
+  keep_where<T>(touches, now);
+  return now;
 }
 
 /// The sums of one body, from the array in which a host stores the sums of all bodies; null: without compaction.

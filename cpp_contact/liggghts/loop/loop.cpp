@@ -12,7 +12,11 @@
 #include "modify.h"
 #include "normal.hpp"
 
-namespace epdem::liggghts::loop {
+namespace epdem::liggghts {
+
+const kernels::SphereKernels* sphere_kernels(LAMMPS_NS::LAMMPS* lmp) { return &loop::state_of(lmp).kernels.spheres; }
+
+namespace loop {
 
 using namespace LIGGGHTS::ContactModels;
 using LAMMPS_NS::PairGran;
@@ -217,6 +221,9 @@ void PairLoop::fetch(const Plan& plan, int n) {
 
 namespace {
 
+/// Two sums at once: a single number that is stored is not yet there for a copy of several.
+typedef double Two __attribute__((vector_size(16)));
+
 /// Beside forces: each body of a pair gets half of the energies, and one loaded contact; with growth the depths of its
 /// dents.
 template <bool tallies, bool adheres, bool grown>
@@ -225,7 +232,8 @@ struct Beside {
   double* const dents;
   double *const work, *const energy, *const loaded, *const parted;
   const bool gives_back;
-  double work_i{}, energy_i{}, loaded_i{}, dents_i[dent_sums] = {};
+  double work_i{}, energy_i{}, loaded_i{};
+  Two dents_i[dent_sums / 2] = {};
   long i = 0;
   double* const others;  // numbers of a ghost, which its owner computes; apart: the sums stay in registers
 
@@ -245,7 +253,8 @@ struct Beside {
       work_i = work[i];
       if (energy && loaded) energy_i = energy[i], loaded_i = loaded[i];
     }
-    if constexpr (grown) std::copy_n(dents + dent_sums * i, dent_sums, dents_i);
+    if constexpr (grown)
+      for (int c = 0; c < dent_sums; c += 2) dents_i[c / 2] = load<Two>(dents + dent_sums * i + c);
   }
 
   EPDEM_INLINE void add(int k, long j, bool owned) {
@@ -268,9 +277,9 @@ struct Beside {
     }
     if constexpr (grown) {
       double* const dents_j = owned ? dents + dent_sums * j : others + 4;
-      for (int c = 0; c < dent_sums; ++c) {
-        dents_i[c] += b.dents_i[c].a[k];
-        dents_j[c] += b.dents_j[c].a[k];
+      for (int c = 0; c < dent_sums; c += 2) {
+        dents_i[c / 2] += Two{b.dents_i[c].a[k], b.dents_i[c + 1].a[k]};
+        store(dents_j + c, load<Two>(dents_j + c) + Two{b.dents_j[c].a[k], b.dents_j[c + 1].a[k]});
       }
     }
   }
@@ -280,7 +289,8 @@ struct Beside {
       work[i] = work_i;
       if (energy && loaded) energy[i] = energy_i, loaded[i] = loaded_i;
     }
-    if constexpr (grown) std::copy_n(dents_i, dent_sums, dents + dent_sums * i);
+    if constexpr (grown)
+      for (int c = 0; c < dent_sums; c += 2) store(dents + dent_sums * i + c, dents_i[c / 2]);
   }
 };
 
@@ -301,4 +311,5 @@ void PairLoop::add_friction(EnergyTally& tally, int n) {
     tally.add_friction(false, b.friction_work.a[k], b.spring_energy.a[k], {b.i[k], b.j[k], atom->nlocal});
 }
 
-}  // namespace epdem::liggghts::loop
+}  // namespace loop
+}  // namespace epdem::liggghts

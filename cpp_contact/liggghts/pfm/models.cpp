@@ -17,6 +17,7 @@ bool only_spheres(LAMMPS_NS::LAMMPS* lmp) { return lmp->atom->sphere_flag && !lm
 // No law there holds bodies across a gap.
 std::vector<double> smallest_radii(LAMMPS_NS::LAMMPS*) { return {std::numeric_limits<double>::infinity()}; }
 void register_contact_distance(LAMMPS_NS::LAMMPS*, double) {}
+const kernels::SphereKernels* sphere_kernels(LAMMPS_NS::LAMMPS*) { return nullptr; }
 
 namespace pfm {
 
