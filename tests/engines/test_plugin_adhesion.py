@@ -160,14 +160,25 @@ def test_cohesion_that_is_stronger_than_the_bodies_is_warned_of_and_they_collaps
     assert limit == pytest.approx(P_Y[0] / 2, rel=0.03)
 
 
-def test_the_distance_factor_follows_from_the_properties_and_is_said(tmp_path):
-    """1.6088 (Gamma^2 R*/E*^2)^(1/3) of the smallest sphere at a wall over its radius, and half a hundredth."""
+LATER = """fix t all particletemplate/sphere 15485863 atom_type 1 density constant 2700 radius constant {!r}
+fix d all particledistribution/discrete 15485867 1 t 1.0
+region in block -0.03 -0.02 -0.01 0.01 0.02 0.03 units box
+fix in all insert/pack seed 49979687 distributiontemplate d insert_every once region in particles_in_region 1
+"""
+
+
+@pytest.mark.parametrize("smallest", [R, 0.9 * R], ids=["there", "inserted"])
+def test_the_distance_factor_follows_from_the_properties_and_is_said(smallest, tmp_path):
+    """1.6088 (Gamma^2 R*/E*^2)^(1/3) of the smallest sphere at a wall over its radius, and half a hundredth. The first
+    rank has no sphere; spheres that will be inserted count, too."""
     for law in ADHESIVE:
         bodies = spheres([[k * 0.01, 0, R] for k in range(3)], np.zeros((3, 3)))
         bodies.type[:] = 1, 2, 3
-        text = deck(law, dt=1e-7, body="fix move all nve/sphere\nrun 1\n")
-        said = good(tmp_path / law, text, files={"box.data": bodies.data(BOX)}).text
+        before = LATER.format(smallest) * (smallest < R)
+        body = "fix move all nve/sphere\nrun 1\n"
+        text = deck(law, dt=1e-7, body=body, before=before, top={"ranks": (2, 1, 1)})
+        said = good(tmp_path / law, text, files={"box.data": bodies.data(BOX)}, ranks=2).text
         (line,) = [ln for ln in said.splitlines() if ln.startswith(f"epdem: ep/{law} pulls")]
-        gaps = [-float(theory(law, i, j).fold_overlap) for i in (1, 2, 3) for j in (1, 2, 3)]
-        assert float(line.split()[-1]) == pytest.approx(1.005 + max(gaps) / R, abs=1e-8)
+        gaps = [-float(theory(law, i, j, smallest).fold_overlap) for i in (1, 2, 3) for j in (1, 2, 3)]
+        assert float(line.split()[-1]) == pytest.approx(1.005 + max(gaps) / smallest, abs=1e-8)
         assert f"up to {max(gaps):.4g}" in line

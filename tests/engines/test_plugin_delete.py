@@ -50,10 +50,11 @@ def test_two_deletions_are_one(tmp_path, compress):
 
 
 def test_ranks_give_partners_the_same_numbers(tmp_path):
+    """On three, of which the last has the numbers of two before it."""
     one = end(tmp_path / "one", BOTH + "delete_atoms group both\n")
-    two = end(tmp_path / "two", BOTH + "delete_atoms group both\n", ranks=2)
+    three = end(tmp_path / "three", BOTH + "delete_atoms group both\n", ranks=3)
     scale = np.abs(one).max(axis=0)
-    assert len(one) == len(two) and (np.abs(two - one) / scale).max() <= 1e-9
+    assert len(one) == len(three) and (np.abs(three - one) / scale).max() <= 1e-9
 
 
 @pytest.mark.parametrize("between", ["neigh_modify one 500 page 200000", "neighbor 2e-4 nsq"])

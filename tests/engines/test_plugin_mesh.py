@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from plugin_decks import Bodies, contact, good, head, materials, per_pair, run
-from triangles import cube
+from triangles import cube, plate
 
 from epdem.scenes.plan.meshes import stl_text
 from marks import thorough
@@ -125,6 +125,37 @@ def test_a_restart_goes_on_with_the_other_loop_over_triangles(tmp_path):
             text = deck("thornton", "history", "at rest", steps=1000, restart=folder / "x.restart")
             ends.append(outcome(tmp_path / f"{first}-{second}", text, loop=second)[0][-1])
     assert len(ends) == 4 and all(np.array_equal(ends[0], e) for e in ends[1:])
+
+
+def of_meshes(folder, loop, *meshes):
+    """Motion of two spheres that roll on a plate each, and forces and torques on those of the plates that are meshes of
+    the wall; the right one turns."""
+    words = "model ep/hertz tangential history rolling_friction cdt"
+    text = head() + "read_data box.data\nneighbor 5e-4 bin\n" + materials("ep/hertz")
+    text += per_pair("coefficientRollingFriction", 0.1) + f"pair_style gran {words}\npair_coeff * *\n"
+    for name in meshes:
+        text += f"fix {name} all mesh/surface/stress file {name}.stl type {2 if name == 'left' else 3}\n"
+    text += f"fix wall all wall/gran {words} mesh n_meshes {len(meshes)} meshes {' '.join(meshes)}\n"
+    turn = "fix turn all move/mesh mesh right rotate origin 0.006 0 0 axis 0 1 0 period 0.01\n"
+    text += turn * ("right" in meshes) + "timestep 1e-7\nfix move all nve/sphere\nthermo 20\n"
+    text += f"thermo_style custom step {' '.join(f'f_{m}[{k}]' for m in meshes for k in range(1, 7))}\n"
+    text += f"thermo_modify lost error norm no format float %.17g\ndump d all custom 20 out.bin {COLUMNS}\nrun 100\n"
+    x, v = [[-6e-3, 0, 1.99e-3], [6e-3, 0, 1.99e-3]], [[3.0, 0, -1], [3.0, 0, -1]]
+    spheres = Bodies(np.array([1, 1]), np.full(2, 2e-3), np.array(x), np.array(v), np.full((2, 3), 200.0))
+    files = {"box.data": spheres.data(ROOM), "left.stl": plate((-0.03, -1e-3)), "right.stl": plate((1e-3, 0.03))}
+    done = good(folder, text, files=files, env={"EPDEM_LOOP": loop} if loop else None)
+    rows = re.findall(rf"^ *\d+((?: +[\d.e+-]+){{{6 * len(meshes)}}}) *$", done.text, re.MULTILINE)
+    return done.frames()[1], np.array([row.split() for row in rows], float).reshape(6, len(meshes), 6)
+
+
+@pytest.mark.parametrize("loop", ["", "generic"], ids=["ours", "generic"])
+def test_each_mesh_of_a_wall_has_its_material_motion_and_sums(loop, tmp_path):
+    """As where it is the only one."""
+    both, on_both = of_meshes(tmp_path / "both", loop, "left", "right")
+    for k, mesh in enumerate(("left", "right")):
+        alone, on_mesh = of_meshes(tmp_path / mesh, loop, mesh)
+        assert np.array_equal(both[:, k], alone[:, k]) and np.array_equal(on_both[:, k], on_mesh[:, 0])
+        assert np.abs(on_mesh[1:3, 0, [0, 2, 4]]).min() > 0  # until the sphere rebounds
 
 
 LATER = {

@@ -32,15 +32,15 @@ def begin(x, radius, v):
 def record():
     energies.append([O.energy[k] if k in dict(O.energy.items()) else 0 for k in ("plasticWork", "contactElastic")])
 
-def cluster(steps, bound=1.25, growth=True, end="Grown"):
+def cluster(steps, bound=1.25, growth=True, end="Grown", **law):
     begin(job["x"], job["radius"], job["v"])
     O.bodies.append(wall(0, axis=2))
     O.engines = [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=bound), Bo1_Wall_Aabb()], verletDist=0.05),
-        *([EpGrowth()] if growth else []),
+        EpGrowth(dead=not growth),
         InteractionLoop([globals()["Ig2_" + s + "_Sphere_ScGeom" + end]() for s in ("Sphere", "Wall")],
-                        [Ip2_EpMat_EpMat_EpPhys()], [Law2_ScGeom_EpPhys_Cavity(compaction=True)]),
+                        [Ip2_EpMat_EpMat_EpPhys()], [Law2_ScGeom_EpPhys_Cavity(**{{"compaction": True}} | law)]),
         PyRunner(command="record()", iterPeriod=1, initRun=True),
         NewtonIntegrator(damping=0),
     ]
@@ -77,7 +77,8 @@ try:
     Law2_ScGeom_EpPhys_Thornton(compaction=True)
 except ValueError as error:
     print(error, file=sys.stderr)
-for wrong in (dict(bound=1.2), dict(growth=False), dict(end="")):
+for wrong in (dict(bound=1.2), dict(growth=False), dict(end=""), dict(cohesion="sjkr"),
+              dict(cohesion="bond", compaction=False)):
     try:
         cluster(10, **wrong)
     except RuntimeError as error:
@@ -92,6 +93,9 @@ REFUSED = (
     "epdem_yade: Law2_ScGeom_EpPhys_Cavity: compaction needs the engine EpGrowth() before InteractionLoop; add it",
     "epdem_yade: Law2_ScGeom_EpPhys_Cavity: compaction misses contacts across gaps with Ig2_Sphere_Sphere_ScGeom; take "
     "Ig2_Sphere_Sphere_ScGeomGrown",
+    "epdem_yade: Law2_ScGeom_EpPhys_Cavity.cohesion = 'sjkr': contacts with compaction have bond or none",
+    "epdem_yade: Law2_ScGeom_EpPhys_Cavity.cohesion = 'bond': it holds contacts with compaction; give compaction = "
+    "True",
 )
 
 
@@ -132,8 +136,9 @@ def test_a_loaded_scene_continues_to_the_bit(found):
     assert sorted(straight.tolist()) == sorted(loaded.tolist()) and straight[:, 4].max() > 0.01
 
 
-def test_engines_that_miss_contacts_across_gaps_are_refused(found):
-    assert tuple(found[1].strip().splitlines()[-4:]) == REFUSED
+def test_what_compaction_does_not_take_is_refused(found):
+    """An engine of growth that is switched off is none."""
+    assert tuple(found[1].strip().splitlines()[-len(REFUSED) :]) == REFUSED
 
 
 def bed(folder, **law):

@@ -213,44 +213,92 @@ def test_two_threads_give_the_forces_of_one(tmp_path):
 
 
 CELL = """
-def pair(periodic, shear=0.0):
+def pair(periodic, shear=0.0, floor=False):
     R = 0.01
     O.reset()
     steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
     O.materials.append(steel)
     first, second, v1, v2 = (0, 0, 0), (0.6 * R, 0, 1.9 * R), (0.0, 1.0, 5.0), (0.0, 0.0, -5.0)
+    if floor:
+        second = (0, 0, 1.001 * R)
+    apart = 0.1 * shear if periodic else 0.0
     if periodic:  # the second is reached across a face, which moves
         O.periodic = True
         O.cell.setBox(0.1, 0.1, 0.1)
         O.cell.velGrad = Matrix3(0, 0, shear, 0, 0, 0, 0, 0, 0)
         O.cell.homoDeform = 0  # velocities as they are, the image moves all the same
-        second, v2 = (second[0], 0, second[2] - 0.1), (v2[0] - 0.1 * shear, 0, v2[2])
-    O.bodies.append([sphere(first, R, material=steel), sphere(second, R, material=steel)])
-    for b, v in zip(O.bodies, (v1, v2)):
+        second, v2 = (second[0], 0, second[2] - 0.1), (v2[0] - apart, 0, v2[2])
+    plate = [(-2 * R, -R, 0), (2 * R, -R, 0), (0, 2 * R, 0)]
+    O.bodies.append([facet(plate, material=steel) if floor else sphere(first, R, material=steel),
+                     sphere(second, R, material=steel)])
+    for b, v in list(zip(O.bodies, (v1, v2)))[floor:]:
         b.state.vel, b.state.angVel = v, (0, 10, 0)
-    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=1e-4),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(en=0.8, es=0.8)],
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Facet_Aabb()], verletDist=1e-4),
+        InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom()],
+                        [Ip2_EpMat_EpMat_EpPhys(en=0.8, es=0.8)],
                         [Law2_ScGeom_EpPhys_Thornton(tangential="partial_slip")]), NewtonIntegrator(damping=0)]
     O.dt = 1e-7
     seen = 0
     for _ in range(1500):
         O.step()
         seen = max(seen, O.interactions.countReal())
-    return [[*b.state.vel, *b.state.angVel] for b in O.bodies], seen, O.cell.hSize[0, 2] if periodic else 0.0
+    velocities = [[*b.state.vel, *b.state.angVel] for b in O.bodies]
+    velocities[1][0] += apart
+    return velocities, seen, O.cell.hSize[0, 2] if periodic else 0.0
 
-json.dump([pair(False), pair(True), pair(True, 30.0)], open("result.json", "w"))
+cases = (False,), (True,), (True, 30.0)
+json.dump([[pair(*case, floor=floor) for case in cases] for floor in (False, True)], open("result.json", "w"))
 """
 
 
 def test_a_contact_across_a_periodic_face_is_that_of_free_bodies(tmp_path):
-    """Also across a face of a sheared cell, whose image moves with the cell."""
-    free, cell, sheared = result(CELL, tmp_path)
-    assert free[1] == cell[1] == sheared[1] == 1 and sheared[2] > 0
-    free, cell = np.array(free[0]), np.array(cell[0])
-    assert free[0, 2] < 0 < abs(free[0, 4] - 10), "the bodies have rebounded"
-    assert np.abs(cell - free).max() <= 1e-9 * np.abs(free).max()
-    moved = np.array(sheared[0])
-    assert np.abs(moved[0] - free[0]).max() <= 3e-3 * np.abs(free).max()  # the cell moves by one step more
+    """Of two spheres, and of a sphere and a wall; also across a face of a sheared cell, whose image moves with it."""
+    for (free, cell, sheared), round_off in zip(result(CELL, tmp_path), (1e-9, 1e-7), strict=True):
+        assert free[1] == cell[1] == sheared[1] == 1 and sheared[2] > 0
+        free, cell, moved = (np.array(found[0]) for found in (free, cell, sheared))
+        assert free[1, 2] > -4 and free[1, 0] != 0, "the bodies have rebounded and rubbed"
+        assert np.abs(cell - free).max() <= round_off * np.abs(free).max()
+        assert np.abs(moved - free).max() <= 3e-3 * np.abs(free).max()  # the cell moves by one step more
+
+
+ANOTHER = (
+    STEEL
+    + """
+R, deep, back = 0.01, 2e-5, 1.5e-5
+
+def loop(law):
+    return InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()],
+                           [globals()["Law2_ScGeom_EpPhys_" + law]()])
+
+def force(*laws):
+    O.reset()
+    O.materials.append(EpMat(young=208e9, poisson=0.3, density=7850, yieldPressure=1e9, yieldStress=4e8))
+    O.bodies.append([wall(0, axis=2), sphere((0, 0, R - (0 if len(laws) > 1 else back)), R)])
+    s = O.bodies[1].state
+    s.blockedDOFs = "xyzXYZ"
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]), loop(laws[0]),
+                 NewtonIntegrator(damping=0)]
+    O.dt = 1e-7
+    for way in (-deep, deep - back) if len(laws) > 1 else ():
+        s.vel = (0, 0, way / (20 * O.dt))
+        O.run(20, True)
+    s.vel = (0, 0, 0)
+    O.saveTmp()  # until a simulation is loaded a contact stays with its law
+    O.loadTmp()
+    O.engines = [*O.engines[:2], loop(laws[-1]), O.engines[3]]
+    O.step()
+    return O.forces.f(1)[2]
+
+pairs = ("Thornton", "Johnson"), ("Cavity", "Thornton"), ("Johnson", "Hertz")
+json.dump([[force(*pair), force(pair[1])] for pair in pairs], open("result.json", "w"))
+"""
+)
+
+
+def test_a_loaded_contact_begins_anew_with_another_law(tmp_path):
+    """In a dent of the first law the force is that of a sphere which has come there with the second alone."""
+    found = np.array(result(ANOTHER, tmp_path))
+    assert found[:, 0] == pytest.approx(found[:, 1], rel=1e-9) and found[:, 1].min() > 0
 
 
 CLUMP = (
@@ -285,7 +333,11 @@ MATCH = (
         "Ip2_EpMat_EpMat_EpPhys()",
         "Ip2_EpMat_EpMat_EpPhys(frictAngle=MatchMaker(matches=((1, 1, 0.5),)), en=0.7, es=0.6, rollingFriction=0.1, "
         "workOfAdhesion=0.2)",
-    ).replace("O.materials.append(steel)", "O.materials.append([EpMat(young=1e9), steel])")
+    )
+    .replace("O.materials.append(steel)", "O.materials.append([EpMat(young=1e9), steel])")
+    .replace(
+        "    NewtonIntegrator", "    InteractionLoop([], [], [Law2_ScGeom_EpPhys_Hertz()], dead=True), NewtonIntegrator"
+    )
     + """
 p = O.interactions[0, 1].phys
 json.dump([p.tangensOfFrictionAngle, p.en, p.es, p.rollingFriction, p.workOfAdhesion, p.yieldPressure, p.wall,
@@ -296,10 +348,49 @@ json.dump([p.tangensOfFrictionAngle, p.en, p.es, p.rollingFriction, p.workOfAdhe
 
 
 def test_values_of_pairs_come_from_matchmakers_and_all_attributes_are_readable(tmp_path):
-    """A MatchMaker knows materials by their numbers, here 1 of both bodies, which are bodies 0 and 1."""
+    """A MatchMaker knows materials by their numbers, here 1 of both bodies, which are bodies 0 and 1. A law that is
+    switched off is not one of two."""
     found = result(MATCH, tmp_path)
     assert found[0] == pytest.approx(math.tan(0.5)) and found[1:7] == [0.7, 0.6, 0.1, 0.2, 2.8e9, 1]
     assert found[7] == pytest.approx(208e9 / (1 - 0.09) / 2) and found[8:] == [True, True, True]
+
+
+ATTACHED = PAIR.replace('Thornton(tangential="partial_slip")', "Jkr()").replace(
+    "EpPhys()]", "EpPhys(workOfAdhesion=50)]"
+)
+LOSSES = """
+(contact,) = O.interactions.all(True)
+losses = contact.phys.adhesionLoss, O.bodies[1].state.adhesionLoss, O.energy["adhesionLoss"]
+json.dump(losses, open("result.json", "w"))
+"""
+
+
+def test_contact_body_and_simulation_have_what_adhesion_took_at_touch(tmp_path):
+    contact, body, simulation = result("O.trackEnergy = True\n" + ATTACHED + LOSSES, tmp_path)
+    assert contact == body == simulation > 0
+
+
+ORDER = """
+found = []
+for first, second in (0, 1), (1, 0):
+    O.reset()
+    for ratio in 2.5, 2.8:
+        O.materials.append(EpMat(young=1e8, poisson=0.3, density=1e3, yieldStress=1e6, plasticRatio=ratio))
+    ids = O.bodies.append([sphere((0, 0, 0), 1, material=first), sphere((0, 0, 1.99), 1, material=second, fixed=True)])
+    of_pair = MatchMaker(matches=((0, 1, 0.5),), algo="zero")
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=0), InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(rollingFriction=of_pair)], [Law2_ScGeom_EpPhys_Cavity()])]
+    O.step()
+    p = O.interactions[0, 1].phys
+    found.append([p.plasticRatio, p.rollingFriction, p.effectiveMass / O.bodies[0].state.mass])
+json.dump(found, open("result.json", "w"))
+"""
+
+
+def test_whichever_body_comes_first_a_pair_has_the_same_constants(tmp_path):
+    """At equal strength the first material decides, a MatchMaker knows a pair of materials, and a body that is not
+    dynamic has no mass."""
+    assert result(ORDER, tmp_path) == [[2.5, 0.5, 1.0]] * 2
 
 
 def test_the_script_of_the_page_settles(tmp_path):
