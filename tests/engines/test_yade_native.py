@@ -374,23 +374,25 @@ ORDER = """
 found = []
 for first, second in (0, 1), (1, 0):
     O.reset()
-    for ratio in 2.5, 2.8:
-        O.materials.append(EpMat(young=1e8, poisson=0.3, density=1e3, yieldStress=1e6, plasticRatio=ratio))
+    for ratio, angle, rolling in (2.5, 0.5, 0.2), (2.8, 0.3, 0.1):
+        O.materials.append(EpMat(young=1e8, poisson=0.3, density=1e3, yieldStress=1e6, plasticRatio=ratio,
+                                 frictionAngle=angle, rollingFriction=rolling))
     ids = O.bodies.append([sphere((0, 0, 0), 1, material=first), sphere((0, 0, 1.99), 1, material=second, fixed=True)])
     of_pair = MatchMaker(matches=((0, 1, 0.5),), algo="zero")
     O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=0), InteractionLoop(
-        [Ig2_Sphere_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(rollingFriction=of_pair)], [Law2_ScGeom_EpPhys_Cavity()])]
+        [Ig2_Sphere_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(es=of_pair)], [Law2_ScGeom_EpPhys_Cavity()])]
     O.step()
     p = O.interactions[0, 1].phys
-    found.append([p.plasticRatio, p.rollingFriction, p.effectiveMass / O.bodies[0].state.mass])
+    found.append([p.plasticRatio, p.es, p.effectiveMass / O.bodies[0].state.mass, p.rollingFriction,
+                  p.tangensOfFrictionAngle])
 json.dump(found, open("result.json", "w"))
 """
 
 
 def test_whichever_body_comes_first_a_pair_has_the_same_constants(tmp_path):
-    """At equal strength the first material decides, a MatchMaker knows a pair of materials, and a body that is not
-    dynamic has no mass."""
-    assert result(ORDER, tmp_path) == [[2.5, 0.5, 1.0]] * 2
+    """At equal strength the first material decides, a MatchMaker knows a pair of materials, a body that is not dynamic
+    has no mass, and of two coefficients of friction the pair has the smaller."""
+    assert result(ORDER, tmp_path) == [[2.5, 0.5, 1.0, 0.1, math.tan(0.3)]] * 2
 
 
 def test_the_script_of_the_page_settles(tmp_path):
@@ -416,6 +418,26 @@ for velocity in (0, 0, -1), (1, 0, -1):
 json.dump([O.interactions.countReal(), *O.forces.f(0)], open("result.json", "w"))
 """
 )
+
+
+ROLLING = """
+steel = EpMat(young=208e9, poisson=0.3, density=7850, rollingFriction=0.1)
+O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.00999), 0.01, material=steel)])
+O.bodies[1].state.blockedDOFs, O.bodies[1].state.angVel = "xyzXYZ", (0, 1e-3, 0)
+O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()],
+                    [Law2_ScGeom_EpPhys_Hertz(tangential="off", rolling="epsd2")]), NewtonIntegrator(damping=0)]
+O.dt, torques = 1e-7, []
+for _ in range(3):
+    O.step()
+    torques.append(O.forces.t(1)[1])
+json.dump(torques, open("result.json", "w"))
+"""
+
+
+def test_the_spring_of_rolling_friction_grows_with_the_angle(tmp_path):
+    first, *later = result(ROLLING, tmp_path)
+    assert first < 0 and later == pytest.approx([2 * first, 3 * first])
 
 
 def test_bodies_that_are_not_dynamic_have_no_dashpot(tmp_path):
