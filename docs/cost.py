@@ -21,8 +21,7 @@ from epdem.scenes.run import run_plan
 from epdem.scenes.tables.columns import last_frame
 from epdem.theory.backbones import ADHESIVE, LAWS
 from epdem.verification import cost
-from epdem.verification.cost import EXPONENT, REFERENCE
-from epdem.verification.cost_report import chart, tables
+from epdem.verification.cost import EXPONENT, REFERENCE, chart, tables
 from epdem.verification.stability.bulk import convergence, scene_case, with_step
 
 NAMES = ("cost", "cost_models", "cost_bulk", "cost_bed")  # errors of impacts by steps, their summary, the bulk scenes

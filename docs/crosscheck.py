@@ -11,7 +11,7 @@ from pages import DOCS, load, markdown, replace_tables, store
 
 from epdem.report.chart import Axis, Chart, Panel, Series, save
 from epdem.verification.engine_comparison import crosscheck
-from epdem.verification.invariance.pairs import VARIANTS
+from epdem.verification.variants import VARIANTS
 
 CASES = ("steel_wall", "two_materials", "oblique_steel")
 

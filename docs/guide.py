@@ -29,7 +29,7 @@ from epdem.case.fields import Quantity
 from epdem.case.impact import Case
 from epdem.case.law import law_keys
 from epdem.case.scene import SceneCase
-from epdem.verification.cli import app
+from epdem.verification.commands import app
 
 ROOT = Path(__file__).parents[1]
 PAGES = ROOT / "runs/guide/pages"

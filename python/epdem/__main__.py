@@ -8,7 +8,7 @@ def main() -> None:
     """Ctrl-C while Python still loads modules ends the process without a traceback; then `cli.main` sees to it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     from .cli.main import main as command
-    from .verification.cli import app
+    from .verification.commands import app
 
     command(app)
 

@@ -12,7 +12,7 @@ from epdem.cli import main
 from epdem.studies.sweep import folder as sweep_folder
 from epdem.studies.sweep.run import plan
 from epdem.verification import figures
-from epdem.verification.cli import app
+from epdem.verification.commands import app
 
 CASES = Path(__file__).parents[2] / "cases"
 TOP = typer.main.get_command(app).commands

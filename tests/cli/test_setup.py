@@ -217,7 +217,7 @@ COMMAND = "from epdem.cli.main import app; app({}, standalone_mode=False)"
     ("program", "module", "absent"),
     [
         ("import epdem", "epdem", SLOW),
-        ("import epdem.verification.cli", "epdem.verification.cli", SLOW),
+        ("import epdem.verification.commands", "epdem.verification.commands", SLOW),
         (COMMAND.format(["predict"]), "epdem.impacts.prediction", TABLES),
         (COMMAND.format(["predict", STEEL, "--json"]), "epdem.impacts.prediction", TABLES),
         # scipy.stats alone takes longer than the impacts

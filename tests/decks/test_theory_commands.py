@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from epdem.case import toml
 from epdem.engines.citations import of_laws
-from epdem.verification.cli import app
+from epdem.verification.commands import app
 
 pytestmark = pytest.mark.figures
 

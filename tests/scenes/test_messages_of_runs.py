@@ -36,8 +36,8 @@ from epdem.scenes.plan import meshes
 from epdem.scenes.tables import columns
 from epdem.studies.sweep import slurm
 from epdem.tools import own_decks
-from epdem.verification.stability import variants
-from epdem.verification.stability.bench import Bench
+from epdem.verification.stability import kinds
+from epdem.verification.stability.running import Bench
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -199,9 +199,9 @@ def test_decks_and_studies(tmp_path):
     deck = tmp_path / "deck"
     deck.write_text("run 1\nrun 2\n")
     with says("2 lines start with 'run', expected 1"):
-        variants.edit(deck, variants.Edit("run", ()))
+        kinds.edit(deck, kinds.Edit("run", ()))
     with says("deck cannot be made into this set-up; take liggghts or yade", CaseError):
-        variants.edits(Bench(engine("embedded"), tmp_path))
+        kinds.edits(Bench(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
         own_decks.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
 

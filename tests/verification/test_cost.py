@@ -10,7 +10,7 @@ import pytest
 
 from epdem.engines import scene_engine
 from epdem.theory.backbones import ADHESIVE, LAWS
-from epdem.verification import cost, cost_report
+from epdem.verification import cost
 from epdem.verification.stability.bulk import convergence
 from scripts import script
 
@@ -57,14 +57,14 @@ def test_order_is_that_of_a_known_power_and_none_where_nothing_converges():
 
 @pytest.mark.figures
 def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedded, tmp_path):
-    data, figure = cost_report.write(embedded, tmp_path)
+    data, figure = cost.write(embedded, tmp_path)
     assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000
     numbers = {"spheres": 512, "error": 1e-4, "order": 2.0}
     steps = [{"share": 0.1, "rms": 4e-4}, {"share": 0.05, "rms": 1e-4}]
     bulk = pd.DataFrame([{"model": "liggghts, cavity"} | numbers | step for step in steps])
     changes = {"density": [1e-3, 2e-3], "force": [0.05, 0.02], "plastic_work": [1e-2, 3e-3]}
     bed = pd.DataFrame({"law": ["cavity", "johnson"], "spheres": 432, "share": 0.1} | changes)
-    text = page.document(*cost_report.tables(embedded).values(), bulk, bed)
+    text = page.document(*cost.tables(embedded).values(), bulk, bed)
     assert "512 steel spheres" in text
     assert "| model | 0.1 | 0.05 | order |\n|---|---|---|---|\n| liggghts, cavity | 0.0004 | 0.0001 | 2 |" in text
     assert "`.venv/bin/python docs/cost.py`" in text and "| cavity |" in text
@@ -75,7 +75,7 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
 def test_the_page_is_that_of_its_tables_and_each_law_has_a_line_of_its_own():
     errors = page.load("cost")
     assert (page.DOCS / "cost.md").read_text() == page.document(*map(page.load, page.NAMES))
-    lines = [s for s in cost_report.chart(errors, "").panels[1].series if s.name in {*LAWS, *ADHESIVE}]
+    lines = [s for s in cost.chart(errors, "").panels[1].series if s.name in {*LAWS, *ADHESIVE}]
     assert len({(s.colour, s.dash) for s in lines}) == len(lines) == len([*LAWS, *ADHESIVE])
 
 

@@ -18,13 +18,12 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
-from epdem.verification.cli import app
+from epdem.verification.commands import app
 from epdem.verification.engine_comparison import crosscheck
-from epdem.verification.invariance.check import examine
-from epdem.verification.invariance.pairs import VARIANTS, unequal_spheres
 from epdem.verification.models import OWN_LAW, engine
 from epdem.verification.models.theories import Mdr
 from epdem.verification.models.theories import prediction as theory_of
+from epdem.verification.variants import VARIANTS, examine, unequal_spheres
 from marks import thorough
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -8,8 +8,8 @@ import pytest
 
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.yade.engine import Yade
-from epdem.verification.invariance import check, pairs
-from epdem.verification.models.lammps import LammpsMdr
+from epdem.verification import variants
+from epdem.verification.models.hosts import LammpsMdr
 from epdem.verification.motion.compare import touch_of
 from epdem.verification.motion.hosts import LiggghtsMotions, YadeMotions
 from epdem.verification.motion.paths import shear_elastic
@@ -46,8 +46,8 @@ def test_the_deck_of_a_motion_is_as_stored(engine, script, module):
 
 @pytest.mark.parametrize("variant", ["swap", "sort", "migration", "restart"])
 def test_the_decks_of_a_variant_are_as_stored(variant, module):
-    found = pairs.pairs(planned(SPHERE), 1e-5)
-    tools = {"": Liggghts()} | ({"yade_": Yade()} if variant in check.OF_YADE else {})
+    found = variants.pairs(planned(SPHERE), 1e-5)
+    tools = {"": Liggghts()} | ({"yade_": Yade()} if variant in variants.OF_YADE else {})
     for head, tool in tools.items():
-        text = "".join(check.scripts(tool, tool.deck(found.plan), found, variant))
+        text = "".join(variants.scripts(tool, tool.deck(found.plan), found, variant))
         compare(HERE, f"{head}pairs_{variant}", text)

@@ -17,13 +17,12 @@ from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError, EngineError
 from epdem.laws.library import Law
 from epdem.verification import native, stability
-from epdem.verification.cli import app
+from epdem.verification.commands import app
 from epdem.verification.models import engine
-from epdem.verification.stability import bulk, repeats, roundoff, suite
-from epdem.verification.stability.bench import Bench
+from epdem.verification.stability import bulk, kinds, roundoff, suite
 from epdem.verification.stability.cases import extremes
-from epdem.verification.stability.running import impact, judge, ladder, setting
-from epdem.verification.stability.two_walls import balance, path, stored
+from epdem.verification.stability.kinds import balance, path, stored
+from epdem.verification.stability.running import Bench, impact, judge, ladder, setting
 from marks import thorough
 from scripts import script
 
@@ -144,7 +143,7 @@ def test_reloads_in_an_engine_repeat_the_laws_force_to_the_last_bit(name, tmp_pa
 @pytest.mark.parametrize(("fault", "word"), [(1e-15, "drift ="), (0.0, "off ="), (None, "work =")])
 def test_the_judge_of_reloads_sees_a_last_bit_a_wrong_branch_and_a_loop(fault, word, monkeypatch, tmp_path):
     """Planted in what the embedded engine gives: a change per cycle, a force of another law, a hysteresis."""
-    good = repeats.embedded_cycles
+    good = kinds.embedded_cycles
 
     def wrong(s, cycles):
         overlap, force = good(s, cycles)
@@ -152,7 +151,7 @@ def test_the_judge_of_reloads_sees_a_last_bit_a_wrong_branch_and_a_loop(fault, w
             return overlap, force * np.where(np.arange(force.shape[1]) > force.shape[1] // 2, 1 + 1e-9, 1.0)
         return overlap, force * (1.0 + fault * np.arange(cycles)[:, None]) * (1.0 if fault else 1 + 1e-7)
 
-    monkeypatch.setattr(repeats, "embedded_cycles", wrong)
+    monkeypatch.setattr(kinds, "embedded_cycles", wrong)
     verdict = suite.verdict(BY_NAME["reloads_1e4"], "thornton", Bench(Embedded(), tmp_path), reloaded=10)
     assert verdict["status"] == "failed" and word in verdict["reason"]
 

@@ -20,11 +20,10 @@ from ..impacts.experiment import Experiment, experiment
 from ..impacts.measurement import CHECKED
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run
-from .invariance.check import examine
-from .invariance.pairs import VARIANTS
 from .models import OWN_LAW, SAME_LAW
 from .models.theories import prediction as predict
 from .runner import Progress, compare_impacts, silent
+from .variants import VARIANTS, examine
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
 OBLIQUE = ("psi_2_error", "e_t_error")  # absolute, the largest

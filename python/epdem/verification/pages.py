@@ -8,8 +8,9 @@ from ..impacts.measurement import UNITS
 from ..report import pages as common
 from ..report.chart import GREY, Axis, Chart, Panel, Series
 from ..report.page import Facts, Page, Part, Rows
-from . import cost_report
 from .cost import Outcome as Cost
+from .cost import chart
+from .cost import tables as tables_of_cost
 from .engine_comparison import Crosscheck
 from .measured_data import Validation
 from .stability.suite import Outcome as Stability
@@ -37,16 +38,15 @@ def of_crosscheck(check: Crosscheck) -> Path:
 
 
 def _study_page(title: str, sentence: str, parts: list[Part], *, passed: bool | None = None) -> Page:
-    """The page of a study: these parts and the versions."""
     every = [*parts, common.origin({}, {})]
     return Page(title, [sentence], every, passed=passed, command=common.command())
 
 
 def of_cost(outcome: Cost, folder: Path) -> Path:
     """Write the page of error against run time."""
-    _, *tables = cost_report.tables(outcome).items()
+    _, *tables = tables_of_cost(outcome).items()
     parts: list[Part] = [
-        cost_report.chart(outcome.rows, outcome.case.case.title),
+        chart(outcome.rows, outcome.case.case.title),
         *(Rows(title, table) for title, table in tables),
     ]
     parts.append(Rows("Errors and times", outcome.rows, {"ns_per_impact": "ns"}))

@@ -33,7 +33,6 @@ class Rerun:
 
     @property
     def same(self) -> bool:
-        """Whether everything is byte for byte the same."""
         return not any(self.differences.values())
 
 

@@ -65,7 +65,6 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Whether every row passed."""
         return bool(self.rows["passed"].all())
 
 

@@ -5,10 +5,17 @@ from typing import Protocol
 
 from ...engines import ENGINES, ImpactEngine
 from ...errors import CaseError
-from .lammps import LammpsHertz, LammpsMdr
-from .liggghts import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
+from .hosts import (
+    BuiltinEdinburgh,
+    BuiltinHertz,
+    BuiltinLuding,
+    LammpsHertz,
+    LammpsMdr,
+    ThorntonNing,
+    YadeLuding,
+    YadeMindlin,
+)
 from .theories import OtherLaw
-from .yade import YadeLuding, YadeMindlin
 
 
 class OwnLaw(ImpactEngine, Protocol):

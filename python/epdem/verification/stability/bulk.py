@@ -23,7 +23,7 @@ from ...scenes.run import run_plan
 from ...scenes.tables.columns import last_frame
 from ...theory.backbones import LAWS
 from ..runner import STUDIES, Progress, Row, silent
-from .two_walls import stored
+from .kinds import stored
 
 SCENES: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 RADIUS, DENSITY, POISSON = 5e-3, 7800.0, 0.3

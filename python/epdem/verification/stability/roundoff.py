@@ -10,9 +10,8 @@ from ...errors import EpdemError
 from ...impacts.plan import starting_phases
 from ...laws.library import ImpactNumbers
 from .. import native
-from .bench import Bench
 from .cases import build
-from .running import Setting, position_floor, setting
+from .running import Bench, Setting, position_floor, setting
 
 FORMULA = "0.5 sqrt(N) eps R/delta_e"
 

@@ -17,12 +17,10 @@ from ...theory.backbones import ADHESIVE, LAWS
 from ..models import engine
 from ..runner import STUDIES, Progress, Row, silent
 from . import bulk
-from .bench import Bench
 from .cases import Extreme, extremes
-from .repeats import bounces, reloads
+from .kinds import bounces, reloads, two_walls
 from .roundoff import floors
-from .running import impact, judge
-from .two_walls import two_walls
+from .running import Bench, impact, judge
 
 BOUNCE_STEPS, RELOADS = 10**9, 10**4
 LAW_OF_SLOW = "thornton"  # if it is among those given; a slow engine runs the first and last case of each group

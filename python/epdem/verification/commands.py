@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The commands of `epdem verify`: each calls its study and prints the answer."""
+"""The commands of `epdem verify`: each calls its study and prints the answer; `app` has those of the product, too."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.text import Text
 
-from ...base.terminal import Shown, frame_table, status
-from ...cli.options import (
+from ..base.terminal import Shown, frame_table, status
+from ..cli.main import app as app
+from ..cli.options import (
     AsJson,
     CasePath,
     Engines,
@@ -20,18 +21,18 @@ from ...cli.options import (
     answer,
     formats,
 )
-from ...errors import CaseError
+from ..errors import CaseError
 
 if TYPE_CHECKING:  # slow to import
-    from ..runner import Outcome
+    from .runner import Outcome
 
 verify = typer.Typer(
     no_args_is_help=True, help="Verify laws and engines against theory, measurements, each other and other codes."
 )
+app.add_typer(verify, name="verify")
 
 
 def _rows(outcome: "Outcome", note: str, as_json: bool) -> typer.Exit:
-    """Print the rows of a study of the runner, and a line with its files."""
     document = {"passed": outcome.passed, "folder": outcome.folder, "rows": outcome.rows}
     return answer(document, [frame_table(outcome.study.title, outcome.rows, digits=3), note], as_json, outcome.passed)
 
@@ -54,10 +55,10 @@ def crosscheck(
 
     Exit code 1: an engine of epdem is outside of the tolerances of the case. Models of other codes are not judged.
     """
-    from ...case.impact import load
-    from ..engine_comparison import crosscheck as check
-    from ..engine_comparison import crosscheck_tables
-    from ..pages import of_crosscheck
+    from ..case.impact import load
+    from .engine_comparison import crosscheck as check
+    from .engine_comparison import crosscheck_tables
+    from .pages import of_crosscheck
 
     folders = [out / path.stem for path in cases] if out and len(cases) > 1 else [out for _ in cases]
     if out and len(set(folders)) < len(cases):
@@ -89,20 +90,19 @@ def cost(
     as_json: AsJson = False,
 ) -> None:
     """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
-    from ...base.files import claim, results_folder
-    from ...case.impact import load
-    from .. import cost as study
-    from .. import cost_report
-    from ..pages import of_cost
+    from ..base.files import claim, results_folder
+    from ..case.impact import load
+    from . import cost as study
+    from .pages import of_cost
 
     kinds = formats(pictures)
     folder = results_folder(out, load(case).name, "cost")
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
         found = study.run(case, engines=engine or [], laws=law or [], repetitions=repetitions, progress=progress)
-        files = [*cost_report.write(found, folder, kinds), of_cost(found, folder)]
+        files = [*study.write(found, folder, kinds), of_cost(found, folder)]
     document = {"case": found.case.name, "seconds": found.seconds, "files": files, "rows": found.rows}
     document |= {"models": found.models}
-    tables = [frame_table(title, frame, digits=3) for title, frame in cost_report.tables(found).items()]
+    tables = [frame_table(title, frame, digits=3) for title, frame in study.tables(found).items()]
     raise answer(document, [*tables, f"see {folder}/report.html"], as_json)
 
 
@@ -122,11 +122,11 @@ def stability(
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ...base.files import claim, results_folder
-    from ...base.tables import write_csv
-    from .. import stability as suite
-    from ..pages import of_stability
-    from ..stability.suite import tables
+    from ..base.files import claim, results_folder
+    from ..base.tables import write_csv
+    from . import stability as suite
+    from .pages import of_stability
+    from .stability.suite import tables
 
     folder = results_folder(out, "stability")
     with claim(folder, force=force, files=["stability.csv"]), status() as progress:
@@ -157,7 +157,7 @@ def motion(
 
     Default engines: embedded and liggghts; the first one is what the others are compared with, at 1e-9 of its force.
     """
-    from ..motion.compare import compare
+    from .motion.compare import compare
 
     with status() as progress:
         found = compare(
@@ -178,7 +178,7 @@ def contacts(
 
     Default engines: embedded and liggghts. References and tolerances are in the files (docs/evidence.md).
     """
-    from ..contacts import compare
+    from .contacts import compare
 
     with status() as progress:
         found = compare(files or [], engines=engine or [], out=out, force=force, progress=progress)
@@ -197,9 +197,9 @@ def data(
     as_json: AsJson = False,
 ) -> None:
     """Run all laws against measured impacts with nothing fitted (default engines: embedded and liggghts)."""
-    from ..measured_data import validate
-    from ..pages import of_validation
-    from ..runner import STUDIES
+    from .measured_data import validate
+    from .pages import of_validation
+    from .runner import STUDIES
 
     with status() as progress:
         found = validate(
@@ -219,8 +219,8 @@ def figures(
     as_json: AsJson = False,
 ) -> None:
     """Draw figures 8.16 to 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
-    from ...base.files import claim
-    from ..figures import draw_all
+    from ..base.files import claim
+    from .figures import draw_all
 
     kinds = formats(pictures)
     with claim(out, force=force), status() as progress:
@@ -235,7 +235,7 @@ def rerun(
     as_json: AsJson = False,
 ) -> None:
     """Repeat a stored run from its results file alone and compare: the same decks and numbers (exit code 0), or not."""
-    from ..rerun import rerun as repeat
+    from .rerun import rerun as repeat
 
     with status() as progress:
         found = repeat(file, progress)
