@@ -150,11 +150,6 @@ def later(stop: StopCondition | None, out: Path, step: int, steps: int, every: i
     if stop is None:
         return None
     gone = max(0, steps - stop.first)
-    share = _share(out, step) if gone else stop.share
+    # the share of its speed that a wall near its force had after the step of a restart file, as the run printed it
+    share = (log.said(out, rf"^share_at_{step}:(\S+)$") or ["1.0"])[-1] if gone else stop.share
     return replace(stop, first=max(0, stop.first - steps), rows=stop.rows - gone // every, gone=gone, share=share)
-
-
-def _share(out: Path, step: int) -> str:
-    """The share of its speed that a wall near its force had after the step of a restart file, as the run printed it."""
-    found = re.findall(rf"^share_at_{step}:(\S+)$", out.read_text(encoding="utf-8", errors="replace"), re.M)
-    return found[-1] if found else "1.0"

@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,7 @@ from ..scenes.plan.phases import NO_VOID, NOT_REACHED
 from ..scenes.plan.plan import ScenePlan
 from ..scenes.tables import columns
 
-_LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
+_LOOP = r"Loop time of (\S+) on \d+ procs for (\d+) steps"
 _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d+)$")
 # thermo words of the deck and their columns; for the loads of walls see `_column`
 ROWS = {x.words["thermo"]: name for name, x in quantities.ROWS.items() if "thermo" in x.words}
@@ -89,34 +90,35 @@ def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] = ()) -> pd.
     return found
 
 
+def said(out: Path, pattern: str) -> list[Any]:
+    """What the lines of a log say in the form of a pattern, as `re.findall` gives it; nothing without a log."""
+    return re.findall(pattern, out.read_text(encoding="utf-8", errors="replace"), re.M) if out.exists() else []
+
+
 def ends(out: Path, upto: float = math.inf) -> dict[str, int]:
     """The step at the end of each phase, of a scene in which one may end early, up to a step."""
-    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
-    found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
+    found = said(out, r"^phase (\w+) ended at step (\d+)")
     return {name: int(step) for name, step in found if int(step) <= upto}
 
 
 def held(out: Path) -> dict[str, tuple[int, float, float, float]]:
     """Of each phase with a condition the step at which it was last looked at, its value, the forces [N] on the opposite
     wall of a press and, where a height or density was awaited, on its punch, else NaN."""
-    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
-    found = re.findall(r"^phase (\w+) held at step (\d+): (\S+)(?: (\S+))?(?: (\S+))?$", text, re.M)
+    found = said(out, r"^phase (\w+) held at step (\d+): (\S+)(?: (\S+))?(?: (\S+))?$")
     numbers = ((name, int(step), [float(x or "nan") for x in values]) for name, step, *values in found)
     return {name: (step, value, opposite, force) for name, step, (value, opposite, force) in numbers}
 
 
 def ways(out: Path) -> dict[tuple[str, str], np.ndarray]:
     """(phase, wall): the way [m] that a force has driven the wall before the phase, shape (3,)."""
-    text = out.read_text(encoding="utf-8", errors="replace")
-    found = re.findall(r"^phase (\w+) begins, wall (\w+) has moved by (\S+) (\S+) (\S+) m", text, re.M)
+    found = said(out, r"^phase (\w+) begins, wall (\w+) has moved by (\S+) (\S+) (\S+) m")
     return {(phase, wall): np.array(way, float) for phase, wall, *way in found}
 
 
 def not_reached(out: Path) -> dict[str, str]:
     """NOT_REACHED of the phases whose condition did not hold in any row; NO_VOID of a phase that left no void."""
-    said = {"was not ended by its condition": NOT_REACHED, "left no void": NO_VOID}
-    found = re.findall(rf"^phase (\w+) ({'|'.join(said)})", out.read_text(errors="replace"), re.M)
-    return {name: said[words] for name, words in found}
+    words = {"was not ended by its condition": NOT_REACHED, "left no void": NO_VOID}
+    return {name: words[found] for name, found in said(out, rf"^phase (\w+) ({'|'.join(words)})")}
 
 
 def inserted(log: Path, step: int) -> dict[str, int]:
@@ -139,8 +141,7 @@ def inserted(log: Path, step: int) -> dict[str, int]:
 
 def loops(log: Path) -> list[tuple[float, int]]:
     """(seconds, steps) of every run in a log, by the engine's own clock."""
-    text = log.read_text(errors="replace") if log.exists() else ""
-    return [(float(seconds), int(steps)) for seconds, steps in _LOOP.findall(text)]
+    return [(float(seconds), int(steps)) for seconds, steps in said(log, _LOOP)]
 
 
 def loop_seconds(log: Path) -> float:

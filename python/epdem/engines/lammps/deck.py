@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The LAMMPS decks of impacts and of scenes: an input file, and a data file for the spheres of each phase."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -20,6 +19,7 @@ from ...scenes.plan.model import Model
 from ...scenes.plan.phases import PhaseSteps
 from ...scenes.plan.plan import ScenePlan
 from ...scenes.tables.columns import columns_of_frames
+from .. import log
 from ..frames import later, phase_at
 from ..host import refuse
 from ..input_script import (
@@ -275,6 +275,5 @@ def _gates(p: ScenePlan, number: int, *, ended: bool) -> list[DeckWall]:
 
 def _printed(out: Path, step: int) -> dict[str, str]:
     """The values of the variables of motions that the run printed at a step."""
-    text = out.read_text(encoding="utf-8", errors="replace")
-    lines = re.findall(rf"^motions at step {step}: (.*)$", text, re.M)
+    lines = log.said(out, rf"^motions at step {step}: (.*)$")
     return dict(value.split("=") for value in lines[-1].split()) if lines else {}
