@@ -18,7 +18,7 @@ from ..jobs.stage import Tables, parts_hash
 from ..scenes.plan.limits import refuse_bodies_in_moved_walls
 from ..scenes.plan.model import Model
 from ..scenes.plan.phases import Phase
-from ..scenes.plan.plan import Resumed, ScenePlan
+from ..scenes.plan.plan import ScenePlan
 from ..scenes.tables.columns import named_rows, with_first_works
 from . import log
 from .frames import Frames, choose, pruning
@@ -95,7 +95,7 @@ class Host(Engine[Any, Any]):
         earlier.remove("path.*")  # large
         return found
 
-    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, int, list[int]]:
         out = folder / self.launcher.OUT
         begun = job.with_ends(log.ends(out), held=log.held(out)) if job.ends_early else job
         frames = Frames(begun, folder, self.tables.kinds(begun))
@@ -105,7 +105,7 @@ class Host(Engine[Any, Any]):
         self.start(script.name, folder, ranks=ranks, append=True, report=pruning(folder, report))
         for path, content in written.items():
             path.write_bytes(content)
-        return self.read(job, folder, without=lost), Resumed(step, lost)
+        return self.read(job, folder, without=lost), step, lost
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
         """The tables of a run, SI, without the frames of the steps `without`.

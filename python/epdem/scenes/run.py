@@ -19,7 +19,7 @@ from .judge import checks, measures
 from .judge.energy_balance import energy_balance
 from .judge.summary import SceneOutcome
 from .judge.warnings import lost_spheres, measured_warnings, passed_walls, planned_warnings
-from .plan.plan import Resumed, SceneEngine, ScenePlan, plan
+from .plan.plan import SceneEngine, ScenePlan, plan
 from .plan.timestep import leading_impact
 from .tables import network, results, stages
 
@@ -83,7 +83,7 @@ def run(
     folder = results_folder(out, p.case.name, "" if engine.name == DEFAULT_ENGINE else engine.name)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    total, continued = p.steps, list[Resumed]()
+    total, begin, lost = p.steps, None, list[int]()
     with claim(folder, force=force, files=given.files, case=p.case.name) as kept:
         old = None if fresh or resume else _stored(folder, given.key)
         same = kept.job.get("inputs") == given.key
@@ -92,10 +92,10 @@ def run(
         ended = None if fresh or resume or old or not same else _ended(engine, p, folder)
 
         def compute() -> tuple[Tables, dict[str, float]]:
+            nonlocal begin, lost
             if resume:
                 _refuse_resume(kept, given, versions)
-                tables, resumed = engine.resume(p, folder, ranks=ranks, report=lambda step: report(step, total))
-                continued.append(resumed)
+                tables, begin, lost = engine.resume(p, folder, ranks=ranks, report=lambda step: report(step, total))
                 return tables, {}
             kept.note(versions, inputs=given.key)
             engine.put(given.files, folder)
@@ -103,7 +103,7 @@ def run(
 
         known = results.engine_tables(p, old.tables) if old else ended
         done = stage(given, compute, Stage(given, known, {"seconds": 0.0}) if known else None)
-        if continued and (lost := continued[0].lost):
+        if lost:
             steps = f"step{'s' * (len(lost) > 1)} {', '.join(map(str, lost))}"
             notes.append(
                 f"{folder}: frames of {steps} are missing or not whole, and left out; --fresh runs the scene anew"
@@ -125,7 +125,6 @@ def run(
         found = results.SceneResults(text, old.attributes if old else about, tables, decks, named)
         results.write(folder / "results.h5", ran, found, old)
     warnings = [*notes, *measured_warnings(ran, tables), *lost_spheres(ran, tables), *passed_walls(ran, tables)]
-    begin = continued[0].step if continued else None
     return SceneOutcome(ran, folder, found, done.seconds["seconds"], done.reused, begin, warnings)
 
 

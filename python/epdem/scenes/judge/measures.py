@@ -12,9 +12,8 @@ from ...case.outputs import MassFlow, ReboundSpeed
 from ...case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ...case.walls import Room, Upright
 from ...errors import CaseError
-from ..plan.model import pair_law
 from ..plan.plan import ScenePlan
-from ..tables.columns import bodies, columns_of_frames, columns_of_rows, last_frame, reduced
+from ..tables.columns import bodies, columns_of_frames, columns_of_rows, last_frame, pair_laws, reduced
 
 LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed; the outer ones, which are its tip and its foot, are left out
@@ -260,8 +259,7 @@ def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     one, other = bodies(p, largest, tables["particles"])
     R_star, m_star = (reduced(one[name], other[name]) for name in ("radius", "mass"))
     speeds = np.zeros(len(one))
-    for (a, b), at in one.groupby([one["type"], other["type"]]).indices.items():
-        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
+    for spec, E_star, at in pair_laws(p, one["type"], other["type"]):
         law = spec.backbone(E_star=E_star, R_star=R_star[at], radius=one["radius"].to_numpy()[at])
         work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
         speeds[at] = np.sqrt(2.0 * work / m_star[at])

@@ -45,7 +45,6 @@ class SceneOutcome:
 
     @property
     def passed(self) -> bool:
-        """Whether all checks of the scene hold."""
         checks = self.results.tables.get("checks")
         return checks is None or bool(checks["passed"].all())
 

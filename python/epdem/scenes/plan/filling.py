@@ -131,16 +131,16 @@ def count_sizes(case: SceneCase, f: Fill) -> list[Size]:
 
 def _insertion(scene: Parts, f: Fill, key: str, count: int) -> Insertion:
     phase, (vx, vy, vz) = next(p for p in scene.phase if f.phase in (None, p.name)), f.velocity
-    velocity, T = (vx, vy, vz), f.temperature
+    at_once = Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), temperature=f.temperature)
     if f.rate is None:
-        return Insertion(f.particles, count, f.region, key, phase.name, velocity, temperature=T)
+        return at_once
     down, depth = -vz, f.region.z[1] - f.region.z[0]
     if not (down > 0 or scene.gravity):
         raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")
     period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
     if count / f.rate > phase.duration:
         raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
-    return Insertion(f.particles, count, f.region, key, phase.name, velocity, f.rate, period, temperature=T)
+    return replace(at_once, rate=f.rate, period=period)
 
 
 def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:

@@ -2,6 +2,7 @@
 """Contact model of a scene, neutral of engines: the law of each pair, types, friction, sub-models."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ...base.declarations import declarations
@@ -53,7 +54,6 @@ class Model:
     bond: float | None = None
 
     def type_of(self, name: str) -> int:
-        """The number of a type."""
         return next(i for i, t in enumerate(self.types, 1) if t.name == name)
 
     def ratios(self) -> dict[str, float]:
@@ -82,7 +82,6 @@ class Model:
 
     @property
     def sliding(self) -> bool:
-        """Whether any pair has friction."""
         return any(mu > 0 for row in self.friction for mu in row)
 
     @property
@@ -120,18 +119,24 @@ def model(case: SceneCase) -> Model:
             types.append(type_of(WALL if len(walls) == 1 else f"{WALL} of {material}", material, wall=True))
             wall_types[material] = len(types)
     wall_types[""] = wall_types[walls[0]] if walls else 1
+    dashpot = case.viscous
+
+    def of_pairs(value: Callable[[Type, Type], float | None]) -> tuple[tuple[float, ...], ...]:
+        rows = (tuple(x for b in types if (x := value(a, b)) is not None) for a in types)
+        return tuple(row for row in rows if row)  # none without adhesion
+
     result = Model(
         law=case.law.name,
         parameters=case.law.numbers.ratios,
         types=tuple(types),
         wall_types=wall_types,
-        friction=tuple(tuple(_friction(case, a, b) for b in types) for a in types),
+        friction=of_pairs(lambda a, b: _friction(case, a, b)),
         tangential=contact.tangential,
-        viscous=_viscous(case, types),
+        viscous=of_pairs(lambda a, b: _own(case, a, b, "restitution") or dashpot.restitution) if dashpot else None,
         tangential_restitution=contact.tangential_restitution,
         rolling=contact.rolling,
         cohesion=contact.cohesion,
-        adhesion=_adhesion(case, types),
+        adhesion=of_pairs(lambda a, b: work_of_adhesion(case, a.material, b.material)),
         compaction=case.law.numbers.compaction,
         bond=contact.bond_strength,
     )
@@ -153,20 +158,8 @@ def model(case: SceneCase) -> Model:
     return result
 
 
-def _adhesion(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ...]:
-    rows = [[work_of_adhesion(case, a.material, b.material) for b in types] for a in types]
-    return tuple(tuple(x for x in row if x is not None) for row in rows) if rows[0][0] is not None else ()
-
-
 def _materials_used(case: SceneCase) -> list[str]:
     return list(dict.fromkeys(p.material for p in case.parts.filled))
-
-
-def _viscous(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ...] | None:
-    if case.viscous is None:
-        return None
-    common = case.viscous.restitution
-    return tuple(tuple(_own(case, a, b, "restitution") or common for b in types) for a in types)
 
 
 def _friction(case: SceneCase, a: Type, b: Type) -> float:

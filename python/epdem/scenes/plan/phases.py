@@ -98,7 +98,6 @@ class PhaseSteps(Phase):
 
     @property
     def record(self) -> bool:
-        """Whether the phase has frames."""
         return self.case.record
 
     @property
@@ -117,12 +116,10 @@ class PhaseSteps(Phase):
 
     @property
     def added(self) -> list[str]:
-        """Walls that come with the phase."""
         return [name for name in self.gates if self.before is None or name not in self.before.gates]
 
     @property
     def removed(self) -> list[str]:
-        """Walls that go at its end."""
         return [name for name in self.gates if self.after and name not in self.after.gates]
 
 

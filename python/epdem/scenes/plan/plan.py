@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Protocol
@@ -451,19 +451,12 @@ def plan(case: SceneCase) -> ScenePlan:
     )
 
 
-@dataclass(frozen=True)
-class Resumed:
-    """Step from which a run was continued; `lost`: steps of earlier frames that are missing or not whole."""
-
-    step: int
-    lost: list[int] = field(default_factory=list)
-
-
 class SceneEngine(Engine[ScenePlan, Tables], Protocol):
     """An engine of scenes, whose tables are rows, particles, contacts, walls and phases, as far as a plan has them."""
 
     def read(self, plan: ScenePlan, folder: Path) -> Tables:
         """The tables of a run that has ended in `folder`. Raises EngineError for what is missing or not whole."""
 
-    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        """Continue a run from its newest restart file. Raises CaseError if there is none, EngineError."""
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, int, list[int]]:
+        """Continue a run from its newest restart file: tables, the step of the file, steps of earlier frames that are
+        missing or not whole. Raises CaseError if there is none, EngineError."""

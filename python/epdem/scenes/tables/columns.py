@@ -5,6 +5,7 @@ Overlap and largest overlap of a contact come from the engine, all other quantit
 """
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -280,8 +281,7 @@ def _lost_at_touch(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) 
     """Work [J] that each contact with adhesion lost when it formed: its energy at touch, which nothing held."""
     first, second = bodies(p, contacts, spheres)
     R_star, lost = reduced(first["radius"], second["radius"]), np.zeros(len(contacts))
-    for (i, j), at in first.groupby([first["type"], second["type"]]).indices.items():
-        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
+    for spec, E_star, at in pair_laws(p, first["type"], second["type"]):
         law = spec.adhesive(E_star=E_star, R_star=R_star[at], radius=first["radius"].to_numpy()[at])
         lost[at] = -law.branch(law.touch_radius)[0].energy(law.touch_radius)
     return pd.Series(lost, contacts.index)
@@ -299,6 +299,12 @@ def bodies(p: ScenePlan, contacts: pd.DataFrame, spheres: pd.DataFrame) -> tuple
     return first, second
 
 
+def pair_laws(p: ScenePlan, one: pd.Series, other: pd.Series) -> Iterator[tuple[LawSpec, float, npt.NDArray[np.intp]]]:
+    """(law, E* [Pa], places of its contacts) of each pair of types, from the types of both bodies of contacts."""
+    for (i, j), at in one.groupby([one, other]).indices.items():
+        yield *pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j))), at
+
+
 def reduced(one: pd.Series, other: pd.Series) -> Array:
     """Reduced radius [m] or mass [kg] of two bodies."""
     return np.asarray(1.0 / (1.0 / one + 1.0 / other))
@@ -314,8 +320,8 @@ def energies(p: ScenePlan, contacts: pd.DataFrame) -> pd.DataFrame:
     """The columns BY_LAW of contacts, of which these are known: i, j (types), R_star, radius of i [m], overlap, largest
     [m], attached, and of GROWTH all but added_overlap, in SI; overlap: of the law, with growth and retreat."""
     out = pd.DataFrame(0.0, index=contacts.index, columns=BY_LAW)
-    for (i, j), of_types in contacts.groupby(["i", "j"]):
-        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (i, j)))
+    for spec, E_star, places in pair_laws(p, contacts["i"], contacts["j"]):
+        of_types = contacts.iloc[places]
         shares = np.round(spec.curvature_share(of_types["R_star"].to_numpy(), of_types["radius"].to_numpy()), 12)
         for _, at in of_types.groupby(shares):  # a law for each size
             out.loc[at.index, BY_LAW] = np.column_stack(_one_law(spec, E_star, at))
