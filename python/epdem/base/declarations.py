@@ -73,11 +73,9 @@ class Declaration:
 
     @property
     def symbols(self) -> dict[str, str]:
-        """Symbol of each parameter by its name."""
         return {p.name: p.symbol for p in self.parameters}
 
     def parameter(self, name: str | None) -> Parameter:
-        """The parameter of that name."""
         return next(p for p in self.parameters if p.name == name)
 
 

@@ -112,7 +112,6 @@ class ResultsFolder:
         self.mark(ended=False)
 
     def mark(self, *, ended: bool) -> None:
-        """Write the marker of the folder."""
         content = {"foreign": sorted(self.foreign), "versions": self.versions, "job": self.job, "ended": ended}
         write_text(self.folder / MARKER, json.dumps(content, indent=1))
 

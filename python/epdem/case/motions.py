@@ -37,7 +37,6 @@ class Motion(Frozen, ABC):
 
     @property
     def rotation(self) -> "RotateMove | None":
-        """The motion of a wall that turns."""
         return None
 
     @property

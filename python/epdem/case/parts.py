@@ -223,7 +223,6 @@ class SingleSphere(Frozen):
 
     @property
     def sphere(self) -> Sphere:
-        """The body as a row of a table."""
         (x, y, z), (vx, vy, vz), (wx, wy, wz) = self.position, self.velocity, self.spin
         return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen, self.temperature)
 
@@ -342,7 +341,6 @@ class Parts(Frozen):
 
     @property
     def meshes(self) -> dict[str, MeshWall]:
-        """The walls of triangles by name."""
         return {w.name: w for w in self.wall if isinstance(w, MeshWall)}
 
     @property
@@ -352,7 +350,6 @@ class Parts(Frozen):
 
     @property
     def random_fills(self) -> list[Fill]:
-        """The fills at random places."""
         return [f for f in self.fill if isinstance(f, Fill)]
 
     @cached_property

@@ -223,7 +223,6 @@ class Until(Frozen):
 
     @property
     def of_bed(self) -> bool:
-        """Whether the height or density of a bed ends the phase."""
         return self.height is not None or self.density is not None
 
     @property

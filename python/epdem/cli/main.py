@@ -119,7 +119,6 @@ def run(
 def _run_impacts(
     case: Path, *, engines: list[str], formats: tuple[str, ...], full: bool, as_json: bool, **options: Any
 ) -> typer.Exit:
-    """Run a case, write its page with the figure, print its table."""
     from ..engines import engine as find
     from ..impacts import summary
     from ..impacts.run import run

@@ -120,7 +120,6 @@ def _failed(failures: list[dict[str, Any]]) -> list[Shown]:
 
 
 def _answer(result: "SweepOutcome", as_json: bool, *, only: bool) -> typer.Exit:
-    """Print the failed points and a summary."""
     from ..studies.sweep.folder import DONE, FAILED
 
     counts = {state: result.count(state) for state in (DONE, FAILED)}
@@ -139,7 +138,6 @@ def _answer(result: "SweepOutcome", as_json: bool, *, only: bool) -> typer.Exit:
 
 
 def _progress(state: dict[str, Any]) -> list[Shown]:
-    """How far a sweep is."""
     states = ", ".join(f"{state[name]} {name}" for name in ("waiting", "running", "done", "failed"))
     shown = [f"{state['case']}: {state['points']} points: {states}"]
     if state["done"] + state["failed"]:

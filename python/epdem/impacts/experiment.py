@@ -137,7 +137,6 @@ class Experiment:
         return body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio
 
     def theory(self) -> Theory:
-        """The law in the theory."""
         return self.law.theory(E_star=self.E_star, R_star=self.R_star, radius=self.body.radius)
 
     def backbone(self) -> Backbone:

@@ -126,7 +126,6 @@ class LawSpec:
 
     @property
     def adheres(self) -> bool:
-        """Whether bodies attract each other."""
         return find_law(self.name).adheres
 
     def ratios(self) -> dict[str, float]:

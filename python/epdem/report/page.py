@@ -53,7 +53,6 @@ class Rows:
         return [*heads(*self.shown).values()]
 
     def cells(self) -> list[list[str]]:
-        """The texts of the rows."""
         frame, _ = self.shown
         return [[*map(cell, row, digits_of(frame))] for row in frame.itertuples(index=False)]
 

@@ -18,7 +18,6 @@ class Declared:
 
     @classmethod
     def declaration(cls) -> Declaration:
-        """Declaration of the law."""
         return declarations()[cls.name]
 
     def read_parameters(self, **values: Real | None) -> tuple[Real, ...]:

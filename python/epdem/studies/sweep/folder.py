@@ -65,7 +65,6 @@ class Sweep:
 
     @property
     def numbers(self) -> range:
-        """The numbers of the points, from 1."""
         return range(1, len(self.points) + 1)
 
     @property

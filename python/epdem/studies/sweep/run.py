@@ -133,7 +133,6 @@ class SweepOutcome:
     ran: int
 
     def count(self, state: str) -> int:
-        """Number of points in a state."""
         return int(self.table[self.table["status"] == state]["point"].nunique())
 
     @property
