@@ -37,9 +37,23 @@ from ..studies.calibrate import Calibration, from_measurement
 from ..studies.fit import Fit, Targets, fit
 from ..studies.sweep import run as study
 from ..studies.sweep.run import SweepOutcome
-from .arguments import Count, Many, Names, Ranks, Seed, Table, names_arguments, take, type_error
-from .files import Case, Scene
-from .stored import Stored, read, two_lines, with_units
+from .files import (
+    Case,
+    Count,
+    Many,
+    Names,
+    Ranks,
+    Scene,
+    Seed,
+    Stored,
+    Table,
+    marked,
+    names_arguments,
+    read,
+    take,
+    two_lines,
+    type_error,
+)
 
 __all__ = [
     "Calibration",
@@ -100,7 +114,7 @@ class Run(_Finished):
     @property
     def table(self) -> pd.DataFrame:
         """Measured and predicted numbers, one row for each speed, engine and law."""
-        return with_units(self.outcome.results.comparison, UNITS)
+        return marked(self.outcome.results.comparison, UNITS)
 
     def plot(self) -> Path:
         """Draw e_n.png, restitution against speed with theory; its path."""
@@ -121,7 +135,7 @@ class SceneRun(_Finished):
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
         """rows, particles, contacts, energy_balance and checks, as far as the scene requests them."""
-        return {name: with_units(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
+        return {name: marked(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())
@@ -177,7 +191,7 @@ def predict(case: Case | Path | str, law: str | None = None) -> pd.DataFrame:
     if not isinstance(found, Case):
         raise type_error("case", found, "give a Case, which theory predicts; a scene has no prediction")
     prediction = predict_experiment(experiment(found.model, take("law", law, str | None)))
-    return with_units(prediction.table(), UNITS)
+    return marked(prediction.table(), UNITS)
 
 
 @names_arguments
