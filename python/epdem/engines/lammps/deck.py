@@ -32,7 +32,7 @@ from ..input_script import (
     taken_places,
     temperature_words,
 )
-from . import launcher, words
+from . import launcher
 from .scene_walls import (
     DeckWall,
     force,
@@ -40,6 +40,8 @@ from .scene_walls import (
     meshes,
     motions,
     motions_again,
+    of_type,
+    options,
     plane,
     power,
     restart_commands,
@@ -173,8 +175,8 @@ def deck(p: ScenePlan) -> SceneDeck:
         skin=p.case.numerics.skin or default_skin(p),
         settings=(" works" if m.compaction else " energies") * (p.output.energy or p.contacts > 0 or p.heat is not None)
         + " strain",
-        materials=tuple((i, words.of_type(m, i), words.options(m, i, i)) for i in types),
-        pairs=tuple((i, j, words.options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
+        materials=tuple((i, of_type(m, i), options(m, i, i)) for i in types),
+        pairs=tuple((i, j, options(m, i, j)) for i, j in combinations(types, 2) if _is_special(m, i, j)),
         motions=tuple(motions(p, 0)),
         power=power(p, p.phases[0]),
         walls=(*(plane(p, w) for w in p.scene.planes), *meshes(p)),
@@ -195,8 +197,8 @@ def deck(p: ScenePlan) -> SceneDeck:
 
 def _is_special(m: Model, i: int, j: int) -> bool:
     """Whether two types have other coefficients than the mean of the like pairs."""
-    own = words.options(m, i, j)
-    return own != words.options(m, i, i) or own != words.options(m, j, j)
+    own = options(m, i, j)
+    return own != options(m, i, i) or own != options(m, j, j)
 
 
 def contact_walls(p: ScenePlan) -> list[str]:

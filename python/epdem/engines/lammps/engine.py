@@ -15,7 +15,7 @@ from ..host import Host
 from ..input_script import impact_model
 from . import deck, launcher, tables
 from .deck import ImpactDeck
-from .words import of_type, options
+from .scene_walls import of_type, options
 
 
 class Lammps(Host):

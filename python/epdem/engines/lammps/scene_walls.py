@@ -7,18 +7,48 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...base.declarations import declarations
 from ...base.rendering import number, wall_id
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
 from ...jobs.engine import Unsupported
+from ...laws.strengths import ADHESION
 from ...scenes.plan import placement
 from ...scenes.plan.beds import PressedBed
 from ...scenes.plan.meshes import spans, surface_rotation
+from ...scenes.plan.model import Model
 from ...scenes.plan.phases import Phase
 from ...scenes.plan.plan import ScenePlan
 from ..host import refuse, words_of_motion
-from ..input_script import WRITE_RESTART, bed_height, press_speed
-from . import words
+from ..input_script import WRITE_RESTART, bed_height, finite, press_speed
+
+
+def of_type(m: Model, i: int) -> str:
+    """The material of type i, from 1: LAW E nu PARAMETERS, SI."""
+    t, declared = m.types[i - 1], declarations()[m.law]
+    values = m.parameters | ({declared.strength: finite(t.strength)} if declared.strength else {})
+    values |= {ADHESION: m.adhesion[i - 1][i - 1]} if m.adheres else {}
+    numbers = (finite(t.young_modulus), t.poisson_ratio, *(values[p.name] for p in declared.parameters))
+    return " ".join([m.law, *map(number, numbers)])
+
+
+def options(m: Model, i: int, j: int) -> str:
+    """The options of contacts of types i and j, from 1; "" without any."""
+    words = []
+    if m.sliding:
+        words += ["tangential", m.tangential, number(m.friction[i - 1][j - 1])]
+    if m.viscous is not None:
+        both = not m.sliding or m.tangential_restitution is not None
+        words += ["restitution" if both else "normal_restitution", number(m.viscous[i - 1][j - 1])]
+    elif m.tangential_restitution is not None:
+        words += ["tangential_restitution", number(m.tangential_restitution)]
+    if m.rolling:
+        words += ["rolling", m.rolling.model, number(m.rolling.coefficient)]
+    if m.attraction:
+        words += ["cohesion", m.attraction[0], number(m.attraction[1])]
+    if m.compaction:
+        words += ["compaction", "on"]
+    return " ".join(words)
 
 
 @dataclass(frozen=True)
@@ -35,13 +65,13 @@ def contact(p: ScenePlan, name: str) -> str:
     """Material and options of the contacts with a wall. Raises CaseError if they differ between types of spheres."""
     wall = p.wall_types[name]
     spheres = [i for i, t in enumerate(p.model.types, 1) if not t.wall]
-    found = {words.options(p.model, i, wall) for i in spheres}
+    found = {options(p.model, i, wall) for i in spheres}
     if len(found) > 1:
         raise Unsupported(
             f"contact.pairs: a wall in LAMMPS has one contact with all spheres, wall {name} has {len(found)}",
             "give the wall the same friction and restitution with all materials",
         )
-    return f"{words.of_type(p.model, wall)} {found.pop()}".rstrip()
+    return f"{of_type(p.model, wall)} {found.pop()}".rstrip()
 
 
 def plane(p: ScenePlan, w: PlaneWall) -> DeckWall:
