@@ -8,8 +8,7 @@ import pytest
 from epdem.theory import adhesion, restitution
 from epdem.theory.adhesive_curve import AdhesiveCurve
 from epdem.theory.cavity import Cavity
-from epdem.theory.cavity_adhesive import CavityAdhesive
-from epdem.theory.flattened import Flattened
+from epdem.theory.cavity_adhesive import CavityAdhesive, Flattened
 from epdem.theory.thornton_ning import ThorntonNing
 
 E, R, Y = 215e9 / (2 * (1 - 0.3**2)), 1e-5, 1e9 / 2.8
