@@ -29,7 +29,7 @@ from epdem.verification import stability
 from epdem.verification.models import engine as find_engine
 from epdem.verification.runner import STUDIES
 from epdem.verification.stability.cases import build, extremes
-from epdem.verification.stability.roundoff import FORMULA
+from epdem.verification.stability.kinds import FORMULA
 from epdem.verification.stability.running import BROKEN, CREATED, ERROR, FINE, LEAST_ORDER, WRONG
 from epdem.verification.stability.suite import Outcome, summary
 

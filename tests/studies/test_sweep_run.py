@@ -24,7 +24,7 @@ from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
 from epdem.report import sweeps
-from epdem.studies.sweep import folder, local, points, run
+from epdem.studies.sweep import folder, points, run
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -180,7 +180,7 @@ def _die(number: int) -> int:
 
 
 def test_a_process_that_dies_takes_no_other_item_with_it():
-    found = dict(local.each(_die, deque(range(1, 8)), jobs=2))
+    found = dict(run.each(_die, deque(range(1, 8)), jobs=2))
     assert "signal 9" in str(found.pop(3)) and found == {n: -n for n in (1, 2, 4, 5, 6, 7)}
 
 

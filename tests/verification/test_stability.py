@@ -19,7 +19,7 @@ from epdem.laws.library import Law
 from epdem.verification import native, stability
 from epdem.verification.commands import app
 from epdem.verification.models import engine
-from epdem.verification.stability import bulk, kinds, roundoff, suite
+from epdem.verification.stability import bulk, kinds, suite
 from epdem.verification.stability.cases import extremes
 from epdem.verification.stability.kinds import balance, path, stored
 from epdem.verification.stability.running import Bench, impact, judge, ladder, setting
@@ -167,7 +167,7 @@ def test_double_and_long_double_agree_to_a_few_eps_per_thousand_steps():
 
 def test_round_off_of_positions_stays_below_its_formula_and_above_a_tenth_of_it():
     """0.5 sqrt(N) eps R/delta_e is two standard deviations: 8 phases lie within a factor of ten below it."""
-    table = roundoff.floors("hertz", [], times=(1e-4, 1e-2, 1.0, 1e2))
+    table = kinds.floors("hertz", [], times=(1e-4, 1e-2, 1.0, 1e2))
     assert np.all(table["positions"] < table["formula"]) and np.all(table["positions"] > 0.1 * table["formula"])
     assert table["double"].max() < 1e-14
 
@@ -209,7 +209,7 @@ def test_liggghts_passes_extreme_cases_and_says_what_it_cannot_represent(tmp_pat
 @pytest.mark.liggghts
 def test_round_off_of_liggghts_is_that_of_positions_and_of_nothing_else(tmp_path):
     """Same statements in another order: equal to the digits that order leaves, 1e-3 of the deviation itself."""
-    table = roundoff.floors("thornton", [Bench(engine("liggghts"), tmp_path)], times=(1e-2, 1e2))
+    table = kinds.floors("thornton", [Bench(engine("liggghts"), tmp_path)], times=(1e-2, 1e2))
     assert table["liggghts"].to_numpy() == pytest.approx(table["positions"].to_numpy(), rel=1e-3)
 
 

@@ -2,20 +2,27 @@
 """A sweep from its command to its table: points, checks, runs of missing points."""
 
 import contextlib
+import ctypes
 import errno
 import math
+import multiprocessing
+import os
 import re
 import shutil
+import signal
 import time
 import tomllib
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from ...base import processes
 from ...base.declarations import declarations
 from ...base.files import claim, running
 from ...case import impact, scene
@@ -23,7 +30,7 @@ from ...case.keys import keys_of
 from ...case.scene import is_scene
 from ...case.toml import LoadedCase, error_context, portable_text, with_whole_paths
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
-from ...errors import CaseError, EpdemError
+from ...errors import CaseError, EpdemError, Stopped
 from ...impacts import store as store_impacts
 from ...impacts.experiment import experiment
 from ...impacts.run import fill, prepare, stored_results
@@ -32,10 +39,101 @@ from ...jobs.engine import check as check_job
 from ...scenes.plan.plan import plan as plan_scene
 from ...scenes.run import run as run_scene
 from . import folder as store
-from . import local, points, table
+from . import points, table
 from .folder import Sweep
 from .points import Point, Value
 from .table import numbers_of
+
+_FORK = multiprocessing.get_context("fork")  # with all that is imported here: a start takes a few milliseconds
+STOPPED = 143  # exit code of a process that received SIGTERM
+
+
+class Died(Exception):
+    """The process of an item ended before its result; the text says how."""
+
+
+def cores() -> int:
+    """Number of processors that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def each(function: Callable[[Any], Any], items: deque[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
+    """(item, function(item)) in the order of completion, at most `jobs` at once; Died for an item whose process died.
+
+    Each item has its own process; `items`, which are taken, may grow meanwhile. Raises what `function` raises, and
+    Stopped if a process received SIGTERM from another one. On any exception, Ctrl-C too, all processes are stopped.
+    """
+    team: dict[Connection, tuple[BaseProcess, Any]] = {}
+    result: Any
+    try:
+        while items or team:
+            while items and len(team) < jobs:
+                ours, theirs = _FORK.Pipe(duplex=False)
+                item = items.popleft()
+                new = _FORK.Process(target=_work, args=(function, item, theirs, os.getpid()))
+                with processes.uninterrupted():
+                    new.start()
+                    team[ours] = new, item
+                theirs.close()  # so that no later process has it: its end is the end of this one
+            for pipe in wait(list(team)):
+                assert isinstance(pipe, Connection)
+                process, item = team[pipe]
+                good, result = True, None
+                with contextlib.suppress(EOFError, OSError):
+                    good, result = pipe.recv()
+                with processes.uninterrupted():  # a signal within join would lose the exit code
+                    process.join()
+                    del team[pipe]
+                pipe.close()
+                if process.exitcode == STOPPED:
+                    raise Stopped
+                if not good:
+                    raise result
+                yield item, Died(_exit_reason(process.exitcode)) if process.exitcode else result
+    finally:
+        with processes.uninterrupted():
+            for living, _ in team.values():
+                living.terminate()
+            for living, _ in team.values():
+                while living.exitcode is None:  # Python drops a signal that comes during a fork
+                    living.join(1.0)
+                    living.terminate()
+
+
+def _exit_reason(code: int | None) -> str:
+    if code is not None and code < 0:
+        return f"its process was ended by signal {-code}{' (out of memory?)' if code == -9 else ''}"
+    return f"its process ended with exit code {code}"
+
+
+def _keep_memory() -> None:
+    """Keep freed memory for the next point: to get 13 MB from the kernel again took a third of a point's time."""
+    trim_threshold, mmap_threshold = -1, -3  # of malloc.h
+    with contextlib.suppress(AttributeError):  # a C library without it
+        mallopt = ctypes.CDLL(None).mallopt
+        mallopt(trim_threshold, 1 << 28)
+        mallopt(mmap_threshold, 1 << 25)
+
+
+def _work(function: Callable[[Any], Any], item: Any, pipe: Connection, parent: int) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
+    signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
+    try:
+        processes.install_signal_handlers(signal.SIGTERM)
+        processes.end_with_parent()  # a parent that is killed cannot
+        _keep_memory()
+        if os.getppid() == parent:
+            try:
+                answer = True, function(item)
+            except Exception as error:
+                answer = False, error
+            pipe.send(answer)
+    except Stopped:
+        os._exit(STOPPED)  # without flushing or removing files of the parent
+    except OSError:
+        os._exit(1)
+    os._exit(0)
+
 
 SEPARATOR = " | "  # of the warnings of a row
 SHARES = 4  # of points, for each job; a start of a process takes as long as some impacts
@@ -240,13 +338,13 @@ def shares(numbers: Sequence[int], jobs: int) -> deque[list[int]]:
 
 def check_points(sweep: Sweep, numbers: Sequence[int], jobs: int | None = None, *, plans: bool = False) -> None:
     """Raise CaseError for the first point that `check` finds wrong; nothing runs."""
-    jobs, wrong = jobs or local.cores(), dict[int, CaseError]()
+    jobs, wrong = jobs or cores(), dict[int, CaseError]()
 
     def wrong_points(share: list[int]) -> dict[int, CaseError]:
         return {n: error for n in share if (error := check(sweep, n, plans=plans))}
 
-    for share, found in local.each(wrong_points, shares(numbers, jobs), jobs):
-        wrong |= {share[0]: CaseError(f"{sweep.place(share[0])}: {found}")} if isinstance(found, local.Died) else found
+    for share, found in each(wrong_points, shares(numbers, jobs), jobs):
+        wrong |= {share[0]: CaseError(f"{sweep.place(share[0])}: {found}")} if isinstance(found, Died) else found
     if wrong:
         raise wrong[min(wrong)]
 
@@ -264,9 +362,9 @@ def work(sweep: Sweep, folder: Path, numbers: Sequence[int], jobs: int) -> Itera
     for number in numbers:  # of a point that failed before
         (store.point_folder(sweep, folder, number) / store.FINISHED).unlink(missing_ok=True)
     waiting = deque([number] for number in numbers) if sweep.scene else shares(numbers, jobs)
-    for share, found in local.each(run_points, waiting, jobs):
+    for share, found in each(run_points, waiting, jobs):
         rest: list[int] = []
-        left = [n for n in share if isinstance(found, local.Died) and not store.is_finished(sweep, folder, n)]
+        left = [n for n in share if isinstance(found, Died) and not store.is_finished(sweep, folder, n)]
         if left:
             dead, *rest = left
             store.end(sweep, folder, dead, store.begin(sweep, folder, dead), rows=None, reason=str(found))
@@ -297,7 +395,7 @@ def run(
             store.write(sweep, folder)
         numbers, done = store.to_do(sweep, folder, retry_failed=retry_failed, only=only), 0
         report(done, len(numbers))
-        for ended in work(sweep, folder, numbers, jobs or max(1, local.cores() // sweep.ranks)):
+        for ended in work(sweep, folder, numbers, jobs or max(1, cores() // sweep.ranks)):
             done += ended
             report(done, len(numbers))
         found = table.collect(sweep, folder, only) if only else table.write(sweep, folder)

@@ -18,8 +18,7 @@ from ..models import engine
 from ..runner import STUDIES, Progress, Row, silent
 from . import bulk
 from .cases import Extreme, extremes
-from .kinds import bounces, reloads, two_walls
-from .roundoff import floors
+from .kinds import bounces, floors, reloads, two_walls
 from .running import Bench, impact, judge
 
 BOUNCE_STEPS, RELOADS = 10**9, 10**4
