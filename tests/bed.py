@@ -72,10 +72,11 @@ def stored_share(y: Array, tau: Array) -> Array:
     return np.asarray(most * np.tensordot(weights, force * slope, 1))
 
 
-def unload(law: Cavity, peak: Array, F: Array, way: Array) -> Array:
-    """Force [N] at a way [m] below the peak overlap; F: peak force."""
+def unload(law: Cavity, peak: Array, F: Array, way: Array) -> tuple[Array, Array]:
+    """Force [N] and contact radius [m] at a way [m] below the peak overlap; F: peak force."""
     share = F / law.force(peak)  # the way scales with the peak force
-    return np.asarray(share * law.unloading_force(peak - way / share, peak))
+    force, radius = law.unloading(peak - way / share, peak)
+    return np.asarray(share * force), radius
 
 
 def unloaded(law: Cavity, peak: Array, F: Array, way: Array) -> Array:
@@ -116,7 +117,9 @@ class Kept(Cavity):
 class Bed:
     """Contacts (i, j) of spheres, j = PLANE: with a plane. The state after a step is in its arrays, one value each.
 
-    radius [m]: of the spheres; material: of all spheres or of each; plane: material of all planes.
+    radius [m]: of the spheres; material: of all spheres or of each; plane: material of all planes. Gamma: work of
+    adhesion [J/m^2] of all pairs, for contacts that do not part (law cavity_adhesive): F = F_b - 2 E* a d at the
+    overlap of the backbone less d = sqrt(2 pi Gamma a/E*).
     """
 
     def __init__(
@@ -129,6 +132,7 @@ class Bed:
         plane: Material = RIGID,
         c_strain: float = FINITE_STRAIN,
         grows: bool = True,
+        Gamma: float = 0.0,
     ):
         n, contacts = len(radius), len(i)
         bodies = [material] * n if isinstance(material, Material) else list(material)
@@ -140,7 +144,8 @@ class Bed:
         self.R_star = np.where(self.wall, self.R_i, 1 / (1 / self.R_i + 1 / self.R_j))
         self.Y = np.minimum(Y[i], Y[j])
         self.strain_i = strain_share(Y[i], Y[j], hardening=FULL_PLASTICITY / FIRST_YIELD)
-        self._c_strain, self._grows = c_strain, grows
+        self._c_strain, self._grows, self._Gamma = c_strain, grows, Gamma
+        self.opened = np.zeros(contacts)  # d [m]
         self.force, self.stored = np.zeros((2, contacts))  # after a step [N], [J]
         self.reached = np.full(contacts, -np.inf)  # largest overlap without growth [m]
         self.grown, self.shift, self.unstored = np.zeros((3, contacts))  # u, q [m] and (1-G) U [J]
@@ -234,12 +239,13 @@ class Bed:
         u, q, e, F_before = self.grown[k], self.shift[k], self.retreat[k], self.peak_force[k]
         s, body, pressure = self.share_i[k], self.pressure, np.zeros(len(k))
         touches = np.ones(len(k), bool)
+        stood, d, d_top, E_star = self.opened[k] > 0.0, self.opened[k], self.opened[k], self.E_star[k]
         for turn in range(400):
             v = u + q
             reached = np.maximum(self.reached[k], overlap[k] - e)
-            on = overlap[k] + v > 0.0
+            on = (overlap[k] + v > 0.0) | stood
             touches = on if turn < 30 else touches & on  # one that ends in this step does not come back in it
-            b = np.maximum(reached + v, 1e-12 * R)
+            b = np.maximum(reached + v + d_top, 1e-12 * R)
             law.look(b)
             yields = touches & (b > law.yield_overlap)
             m = np.where(yields, 1 - law.yield_overlap / b, 0.0)
@@ -251,15 +257,18 @@ class Bed:
             lost = np.where(touches & self._grows, lost, 0.0)
             c_i, c_j = s * lost[0] * m, (1 - s) * lost[1] * m
             back = share * law.recovered_overlap(b)
-            residual = np.where(yields, np.maximum(np.maximum(reached, 0) - (1 - c_i - c_j) * back, 0), 0.0)
+            residual = np.where(yields, np.maximum(np.maximum(reached + d_top, 0) - (1 - c_i - c_j) * back, 0), 0.0)
             unstored = np.where(yields, (c_i + c_j) * share**2 * law.recovered_work(b), 0.0)
             mean = np.where(F_before > 0, 0.5 * (F + F_before), F)
             q = self.shift[k] + np.where(yields, (unstored - self.unstored[k]) / np.where(yields, mean, 1.0), 0.0)
-            way = np.maximum(reached + e - overlap[k], 0.0)
-            force = np.where(touches, unload(law, b, np.where(touches, F, 1.0), way), 0.0)
+            way = np.maximum(reached + e - overlap[k] + (d_top - d), 0.0)
+            force, a = unload(law, b, np.where(touches, F, 1.0), way)
+            d_before, d, d_top = d, *(np.sqrt(2 * np.pi * self._Gamma * x / E_star) for x in (a, law.radius(b)))
+            top = F - 2 * E_star * law.radius(b) * d_top
+            force = np.where(touches, force - 2 * E_star * a * d, 0.0)
             before, e_before = pressure, e
             B_i, B_j = np.where(yields, c_i * back, 0.0), np.where(yields, c_j * back, 0.0)
-            full = np.maximum(self.full, self._sum(k, B_i * F, B_j * F))
+            full = np.maximum(self.full, self._sum(k, B_i * top, B_j * top))
             full[-1] = 0.0
             lift = np.clip(self._sum(k, B_i * force, B_j * force) / np.where(full > 0, full, np.inf), 0, 1) ** 0.75
             lift = np.where(full > 0, lift, 1.0)
@@ -269,6 +278,7 @@ class Bed:
                 body = np.maximum(self.pressure, self._pressure(k, force, overlap[k]))
                 pressure = self._between(k, g, body)
             settled = np.all(np.abs(pressure - before) <= CHANGE * self.Y[k])
+            settled = settled and np.all(np.abs(d - d_before) <= CHANGE * R)
             settled = settled and np.all(np.abs(e - e_before) <= 0.1 * CHANGE * R)
             if settled and np.all(np.abs(u + q - v) <= CHANGE * R):
                 break
@@ -276,7 +286,7 @@ class Bed:
             raise ArithmeticError(f"growth of {np.max(np.abs(u + q - v) / R):.1e} R* per turn after {turn} turns")
         stored = unloaded(law, b, np.where(touches, F, 1.0), way)
         after = {"force": force, "stored": stored, "grown": u, "shift": q, "unstored": unstored}
-        after |= {"peak": b, "peak_force": F, "reached": reached, "retreat": e}
+        after |= {"peak": b, "peak_force": F, "reached": reached, "retreat": e, "opened": d}
         for name, values in after.items():
             empty = {"reached": -np.inf}.get(name, 0.0)
             kept: Array = getattr(self, name)

@@ -280,7 +280,7 @@ constexpr void fill(Kernels& kernels) noexcept {
     using Friction = decltype(model);
     kernels.of[law][friction][0] = offered<Law, Friction, false>();
     kernels.of[law][friction][1] = offered<Law, Friction, true>();
-    if constexpr (compacts<Law>) {
+    if constexpr (compacts<Law> && (!adheres<Law> || Friction::of_liggghts)) {
       kernels.grown[law][friction][0][0] = &contacts<Law, Friction, false, true, false>;
       kernels.grown[law][friction][0][1] = &contacts<Law, Friction, false, true, true>;
       kernels.grown[law][friction][1][0] = &contacts<Law, Friction, true, true, false>;

@@ -204,13 +204,13 @@ double PairEp::init_one(int i, int j) {
   pass_.damped |= constants[kernels::damping] > 0.0;
   pass_.viscous |= constants[kernels::dashpot] > 0.0;
   const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
-  if (models_.compaction) return (1.0 + growth_reach) * (largest_[i] + largest_[j]);
   const double least = 1.0 / (1.0 / smallest_[i] + 1.0 / smallest_[j]);
   judge_.note(j * width_ + i, *models_.law, constants, least);
   if (judge_.note(i * width_ + j, *models_.law, constants, least) && least > 0.0 && comm->me == 0)
     utils::logmesg(lmp, "epdem: {}: the run ends where the smallest spheres of these types meet: {}\n", place,
                    models_.law->refused_adhesion(constants + kernels::law_data, least));
-  return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, R_star);
+  const double gap = checked_gap(lmp, place, *models_.law, constants, R_star);
+  return (models_.compaction ? 1.0 + growth_reach : 1.0) * (largest_[i] + largest_[j]) + gap;
 }
 
 void PairEp::set_pass(bool counts) {

@@ -361,7 +361,8 @@ kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& m
   const kernels::Kernel kernel =
       models.compaction ? set.grown[law][friction][wall][complete] : set.of[law][friction][wall];
   if (kernel) return kernel;
-  if (models.compaction) fail(lmp, place + ": law " + models.law->name + " has no compaction; take law cavity");
+  if (models.compaction && set.of[law][friction][wall])
+    fail(lmp, place + ": law " + models.law->name + " has no compaction; take law cavity or cavity_adhesive");
   fail(lmp, place + ": tangential " + names<Frictions>()[models.friction] + " does not exist beside law " +
                 models.law->name + "; take tangential history");
 }

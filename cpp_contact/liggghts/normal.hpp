@@ -65,7 +65,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (plastic_work_ && !wall_) tally_.create(lmp, adds_friction_, law_.adheres, elastic_energy_);
     if (contact_strain_ && !wall_) LargestStrain::create(lmp);
     if (!compaction_) return;
-    if (!law_.compacts) refuse("compaction", "only ep/cavity has it");
+    if (!law_.compacts) refuse("compaction", "only ep/cavity and ep/cavity_adhesive have it");
     if (!setup) refuse("compaction", "the loops of LIGGGHTS-PFM do not have it");
     if (cohesion && !bonds_) refuse("compaction", "it is for contacts without cohesion, or with ep/bond");
     if (!wall_) Growth::create(lmp);
@@ -227,7 +227,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
 
   /// Bodies that touch without being in contact (inside a dent) begin anew in all other models.
   void forget_others(double* history) const {
-    const int first = offset_ + history_size_ + has_step(), last = wall_ ? wall_gran_->dnum() : pair_->dnum_pair();
+    const int first = offset_ + history_size_ + has_step();
+    const int last = compaction_ ? gap_.growth : wall_ ? wall_gran_->dnum() : pair_->dnum_pair();
     std::fill_n(history + first, std::max(0, last - first), 0.0);
   }
 

@@ -14,7 +14,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     cohesionModel_ = place_of(epdem::Cohesions{}, "cohesion", cohesion);
     if (compaction && !compacts()) {
       compaction = false;
-      throw std::invalid_argument(getClassName() + ".compaction = True: only Law2_ScGeom_EpPhys_Cavity has it");
+      throw std::invalid_argument(getClassName() + ".compaction = True: only Law2_ScGeom_EpPhys_Cavity and " +
+                                  "Law2_ScGeom_EpPhys_CavityAdhesive have it");
     }
     if (compaction) frictionModel_ = grown(frictionModel_);
   }
@@ -26,7 +27,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
     ((string, cohesion, "off", Attr::triggerPostLoad, "cohesion beside a law without adhesion: off, sjkr (cohesionEnergyDensity times the area of the overlap's lens), sjkr2, or with compaction bond (cohesionEnergyDensity is its strength [Pa])"))
-    ((bool, compaction, false, Attr::triggerPostLoad, "whether spheres grow at each contact by the dents of their other contacts, of cavity; takes :yref:`EpGrowth`, Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25) and Ig2_..._ScGeomGrown in place of Ig2_..._ScGeom"))
+    ((bool, compaction, false, Attr::triggerPostLoad, "whether spheres grow at each contact by the dents of their other contacts, of cavity and cavity_adhesive; takes :yref:`EpGrowth`, Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25) and Ig2_..._ScGeomGrown in place of Ig2_..._ScGeom"))
     ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
     ((Real, largestRadiusRatio, 0., Attr::readonly, "largest strain w a/R* of all contacts so far, w: share of the weaker body"))
     ((Real, largestOverlapRatio, 0., Attr::readonly, "largest w delta/R* of all contacts so far, delta: overlap")));
@@ -266,7 +267,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       scene->forces.addTorque(id1, eigen(loads.torque_i));
       scene->forces.addTorque(id2, eigen(loads.torque_j));
     }
-    if constexpr (epdem::adheres<Law>) return c.overlap > 0.0 || history.law.root > 0.0;
+    if constexpr (epdem::adheres<Law> && !grows) return c.overlap > 0.0 || history.law.root > 0.0;
     return true;
   }
 

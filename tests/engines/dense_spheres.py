@@ -11,6 +11,8 @@ from epdem.theory.cavity import FINITE_STRAIN
 
 E, NU, Y = 120e6, 0.34, 1e6
 LIKE = {"E": E, "nu": NU, "yieldStress": Y, "firstYieldRatio": 1.6, "plasticRatio": 2.8, "finiteStrain": FINITE_STRAIN}
+GAMMA = 0.4 * 5.9 * Y**3 * 0.5 / (E / (1 - NU**2) / 2) ** 2  # 0.4 of the largest work of adhesion of like spheres
+STICKY = {"back": 0.01, "Gamma": GAMMA}  # so slow that no contact parts
 HEAVY = 1e15  # density [kg/m^3] of spheres that no contact slows down
 # A sphere, five neighbours that press it at unlike speeds and one that only its growth reaches; a floor below all.
 RADII = np.array([1.0, 0.8, 1.2, 0.9, 1.1, 1.0])
@@ -22,23 +24,25 @@ MOVES = -SPEEDS[:, None] * WAYS - [0.0, 0.0, 0.25]  # all come down to the floor
 CLUSTER = WAYS * (RADII[0] + RADII + GAPS)[:, None] + [0.0, 0.0, 1.205]
 
 
-def scene(x, v, *, radius=1.0, density=HEAVY, compaction=True, **more):
-    """Spheres of one material of law cavity with finite strain."""
-    return Scene("cavity", [LIKE | {"density": density}], x, v, radius=radius, compaction=compaction, **more)
+def scene(x, v, *, radius=1.0, density=HEAVY, compaction=True, Gamma=None, **more):
+    """Spheres of one material of law cavity with finite strain, with the work of adhesion Gamma of cavity_adhesive."""
+    material = LIKE | {"density": density} | ({} if Gamma is None else {"workOfAdhesion": Gamma})
+    law = "cavity" if Gamma is None else "cavity_adhesive"
+    return Scene(law, [material], x, v, radius=radius, compaction=compaction, **more)
 
 
-def cluster(steps, **more):
-    """The cluster at `steps` loading and as many unloading steps, over a second each."""
-    moves = (MOVES, steps), (-0.3 * MOVES, steps)
+def cluster(steps, back=0.3, **more):
+    """The cluster at `steps` loading and as many unloading steps, over a second each; back: speed of unloading."""
+    moves = (MOVES, steps), (-back * MOVES, steps)
     return scene(CLUSTER, MOVES, radius=RADII, dt=1.0 / steps, plane=0, moves=moves, **more)
 
 
 @cache
-def exact(steps):
+def exact(steps, back=0.3, Gamma=0.0):
     """Forces on the cluster by numpy, shape (2 steps + 1, 6, 3), and the largest."""
     t = np.concatenate([np.arange(steps + 1) / steps, np.arange(1, steps + 1) / steps])
     first = np.arange(2 * steps + 1) <= steps
-    F = forces(CLUSTER + np.where(first, t, 1.0 - 0.3 * t)[:, None, None] * MOVES, RADII)
+    F = forces(CLUSTER + np.where(first, t, 1.0 - back * t)[:, None, None] * MOVES, RADII, Gamma)
     return F, np.abs(F).max()
 
 
@@ -60,11 +64,11 @@ def geometry(x, radius):
     return *np.array(pairs).T, np.array(overlap).T, np.moveaxis(np.array(normal), 0, 1)
 
 
-def forces(x, radius):
+def forces(x, radius, Gamma=0.0):
     """Forces on spheres along a path, shape (steps, n, 3), with the sums of each step itself: the exact limit."""
     i, j, overlap, normal = geometry(x, radius)
     like = Material(E, NU, Y)
-    bodies = Bed(np.asarray(radius, float), i, j, like, plane=like)
+    bodies = Bed(np.asarray(radius, float), i, j, like, plane=like, Gamma=Gamma)
     F = np.zeros(x.shape)
     for t in range(len(x)):
         f = bodies.step(overlap[t])[:, None] * normal[t]

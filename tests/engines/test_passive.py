@@ -12,6 +12,7 @@ from walks import energies, falls, nine_spheres, one_body, two_bodies, walk
 
 from bed import Bed, Material
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
+from epdem.theory.cavity_adhesive import CavityAdhesive
 from marks import thorough
 
 HARD, SOFT, SOFTEST = (120.0, 0.34, 1.0), (30.0, 0.2, 1.0), (10.0, 0.3, 1.0)
@@ -107,6 +108,23 @@ def test_walks_in_liggghts_create_no_energy_at_any_step(tmp_path):
         ledger.append(np.abs(work - elastic - lost).max() / work.max())
     assert max(fall) < 1e-5, fall
     assert ledger[0] < 1e-5 and ledger[1] < ledger[0] / 3, ledger
+
+
+@pytest.mark.parametrize("host", [LIGGGHTS, LAMMPS])
+@pytest.mark.parametrize(("cluster", "bed"), [("one body", HARD), ("two of two sizes", SOFT)])
+def test_walks_with_adhesion_create_no_energy(cluster, bed, host, tmp_path):
+    """Contacts form, part and form again in their dents. Gamma: 0.7 of the largest one of two of the smaller spheres.
+    The force of the steps in which it jumps is another one, so that the dissipation of ten steps counts."""
+    R_star = 0.5 * CLUSTERS[cluster][1].min()
+    law = CavityAdhesive(
+        E_star=0.5 * bed[0] / (1 - bed[1] ** 2), R_star=R_star, Gamma=0.0, Y=1.0, c_strain=FINITE_STRAIN
+    )
+    Gamma = 0.7 * float(law.largest_adhesion)
+    for steps, limit in ((500, 1e-4), (1000, 2e-5)):
+        found = walk(host, tmp_path / str(steps), CLUSTERS[cluster], [bed], steps, count=4, Gamma=Gamma)
+        work, elastic, _ = energies(found)
+        assert (found[..., FORCE].min(), found[..., ELASTIC].min()) < (0.0, 0.0)
+        assert falls(work, elastic, 10).max() < limit
 
 
 LIMITS = {"lammps": (1e-5, 1e-5, 1e-3, 0.6), "yade": (1e-4, 2e-5, 4e-4, 0.35)}

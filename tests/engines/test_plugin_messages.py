@@ -163,7 +163,7 @@ REFUSED |= {
     "compaction of another law": (
         "ep/thornton",
         [setting("compaction on")],
-        ["setting compaction on is not available", "only ep/cavity has it"],
+        ["setting compaction on is not available", "only ep/cavity and ep/cavity_adhesive have it"],
     ),
     "compaction beside cohesion": (
         "ep/cavity",

@@ -87,7 +87,8 @@ np.savez("found.npz", **found)
 """
 
 REFUSED = (
-    "Law2_ScGeom_EpPhys_Thornton.compaction = True: only Law2_ScGeom_EpPhys_Cavity has it",
+    "Law2_ScGeom_EpPhys_Thornton.compaction = True: only Law2_ScGeom_EpPhys_Cavity and "
+    "Law2_ScGeom_EpPhys_CavityAdhesive have it",
     "epdem_yade: Law2_ScGeom_EpPhys_Cavity: Bo1_Sphere_Aabb.aabbEnlargeFactor = 1.2, compaction closes gaps of up to "
     "a quarter of the radii; give at least 1.25",
     "epdem_yade: Law2_ScGeom_EpPhys_Cavity: compaction needs the engine EpGrowth() before InteractionLoop; add it",

@@ -64,21 +64,23 @@ def lines(host, values, depth, steps):
     return text + f"unfix move\nfix move all move variable v_x0 v_x1 v_x2 v_v0 v_v1 v_v2\nrun {steps}\n"
 
 
-def walk(host, folder, cluster, materials, steps, *, count=4, seed=7, depth=0.05, mu=0.0):
+def walk(host, folder, cluster, materials, steps, *, count=4, seed=7, depth=0.05, mu=0.0, Gamma=None):
     """Frames of `count` random walks of a cluster, shape (steps + 1, count, n, columns of `frames`). materials: E, nu,
-    Y of the types, which alternate over the spheres; mu: of partial slip. A walk approaches by `depth` R and oscillates
-    by three sines of up to 0.6 of it."""
+    Y of the types, which alternate over the spheres; mu: of partial slip; Gamma: of cavity_adhesive. A walk approaches
+    by `depth` R and oscillates by three sines of up to 0.6 of it."""
     x, radius, ways = cluster
     n, (way, radii) = len(x), paths(cluster, steps, count=count, seed=seed, depth=depth)
     kinds = [LIKE | {"E": E, "nu": nu, "yieldStress": Y, "density": 1e15} for E, nu, Y in materials]
     values = np.hstack([np.tile(ways * radius[:, None], (count, 1)), *swings(cluster, count, depth, seed)])
+    law = "cavity" if Gamma is None else "cavity_adhesive"
+    kinds = [kind | ({} if Gamma is None else {"workOfAdhesion": Gamma}) for kind in kinds]
     slip = {"tangential": "partial_slip", "friction": mu} if mu else {}
     if host == "yade":
         slip["moves"] = tuple((v, 1) for v in np.diff(way, axis=0) * steps)
     else:
         slip["lines"] = lines(host, values, depth, steps)
     still = {"radius": radii, "kinds": np.arange(count * n) % n % len(kinds), "compaction": True, "skin": 0.1}
-    found = frames(host, folder, Scene("cavity", kinds, way[0], 0 * way[0], 1.0 / steps, steps, **still, **slip))
+    found = frames(host, folder, Scene(law, kinds, way[0], 0 * way[0], 1.0 / steps, steps, **still, **slip))
     return found.reshape(steps + 1, count, n, -1)
 
 

@@ -95,6 +95,8 @@ LAWS = {
     "jkr": {"name": "jkr", "work_of_adhesion": "0.02 J/m^2"},
     "thornton_ning": {"name": "thornton_ning", "work_of_adhesion": "0.02 J/m^2"},
     "cavity_adhesive": {"name": "cavity_adhesive", "work_of_adhesion": "5e-4 J/m^2"},
+    "cavity_adhesive, compaction": {"name": "cavity_adhesive", "work_of_adhesion": "5e-4 J/m^2", "compaction": True}
+    | {"finite_strain": True},
 }
 PAIRS = [{"between": ["glass", "wall"], "friction": 0.7}, {"between": ["glass", "steel"], "friction": 0.1}]
 STRENGTHS = {

@@ -15,6 +15,7 @@ from epdem.errors import CaseError
 from epdem.scenes.plan.plan import plan
 
 COMPACT = {"name": "cavity", "finite_strain": True, "compaction": True}
+STICKY = COMPACT | {"name": "cavity_adhesive"}
 
 
 def pressed(law, **tables):
@@ -27,11 +28,12 @@ def pressed(law, **tables):
 
 
 @pytest.mark.liggghts
-def test_energies_of_a_press_leave_nothing_over_and_growth_raises_its_force(tmp_path):
+@pytest.mark.parametrize("law", [COMPACT, STICKY | {"work_of_adhesion": "1 J/m^2"}], ids=lambda law: law["name"])
+def test_energies_of_a_press_leave_nothing_over_and_growth_raises_its_force(law, tmp_path):
     """Plastic work and elastic energy come by two routes: what LIGGGHTS books, and the law at the stored overlaps."""
     force = []
-    for name, law in (("on", COMPACT), ("off", COMPACT | {"compaction": False})):
-        found = ran(pressed(law), tmp_path / name).results
+    for name, on in (("on", True), ("off", False)):
+        found = ran(pressed(law | {"compaction": on}), tmp_path / name).results
         balance = found.energy_balance
         moved = balance[["kinetic", "plastic", "elastic"]].abs().max().sum()
         assert balance["balance"].abs().max() < 0.02 * moved
@@ -42,7 +44,7 @@ def test_energies_of_a_press_leave_nothing_over_and_growth_raises_its_force(tmp_
     assert 1.1 * force[1] < force[0] < 1.6 * force[1]
 
 
-def lattice(folder):
+def lattice(folder, law):
     """64 spheres in a grid between planes, which a plate presses within 3 ms, holds and releases."""
     rng = np.random.default_rng(3)
     axis = 3.05e-3 * (np.arange(4) - 1.5)
@@ -64,14 +66,14 @@ def lattice(folder):
     )
     for material in data["materials"].values():
         material |= {"young_modulus": "12 MPa", "yield_stress": "0.1 MPa"}
-    return write_case(data | {"law": COMPACT, "numerics": {"time_step": "4e-6 s"}}, folder)
+    return write_case(data | {"law": law, "numerics": {"time_step": "4e-6 s"}}, folder)
 
 
 @pytest.mark.lammps
 @pytest.mark.liggghts
 def test_a_press_in_lammps_is_that_of_liggghts(tmp_path):
     """Forces, growth and energies of all contacts while the plate presses, stands and goes back."""
-    path = lattice(tmp_path)
+    path = lattice(tmp_path, COMPACT)
     ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("lammps", "liggghts"))
     for name in ("kinetic_energy", "largest_overlap_ratio", "lid_force_z", "floor_force_z", "left_force_x"):
         largest = np.abs(theirs.rows[name]).max()  # LIGGGHTS writes 8 digits

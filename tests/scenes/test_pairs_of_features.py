@@ -48,8 +48,9 @@ def with_key(key):
     return {"walls": {name for name, walls in SLOTS["walls"].items() if any(key in wall for wall in walls)}}
 
 
-ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning", "cavity_adhesive"}}, {"output": {"rows alone"}}
-COMPACTION = {"cavity, compaction", "cavity, bonds"}
+STICKY = "cavity_adhesive, compaction"
+ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning", "cavity_adhesive", STICKY}}, {"output": {"rows alone"}}
+COMPACTION = {"cavity, compaction", "cavity, bonds", STICKY}
 COHESION = {"cohesion", "cohesion with friction"}
 NOT_LINEAR = {
     "phases": {"wall vibrates", "wall presses", "wall turns", "wall turns, then moves", "wall moves, then tilts"}

@@ -225,9 +225,9 @@ struct CavityAdhesive {
   T lost_between(T R_star, T from, T to, const Point<T>& first, const Point<T>& last) const noexcept {
     const T middle = 0.5 * (from + to), sixth = (to - from) / 6.0;
     const Point<T> now = body.load(R_star, middle);
-    const auto yields = [&](T b, const Point<T>& p) { return p.force - mismatch_slope(R_star, b, p); };
+    const auto loss = [&](T b, const Point<T>& p) { return p.force - mismatch_slope(R_star, b, p); };
     const auto rest = [&](const Point<T>& p) { return opening(p.radius) * p.force - recovered_work(E_star, p); };
-    return sixth * (yields(from, first) + 4.0 * yields(middle, now) + yields(to, last)) + rest(last) - rest(first);
+    return sixth * (loss(from, first) + 4.0 * loss(middle, now) + loss(to, last)) + rest(last) - rest(first);
   }
 
   /// Elastic and surface energy [J] at a peak.
@@ -278,12 +278,33 @@ inline auto has_dent(const CavityAdhesive<T>& law, const typename CavityAdhesive
 
 }  // namespace detail
 
-/// As the step of `Jkr`. Growth moves the opening curve; at its peak the force is the force of growth, so that the same
-/// step taken again gives the same bits. A contact that broke inside its dent forms again where the curve begins; the
-/// history is cleared when separated and delta <= 0.
+namespace detail {
+
+/// What a contact keeps of its opening curve.
 template <class T>
+struct Opened {
+  T dent, root, R_open;
+};
+
+/// at: overlap of the backbone at this peak.
+template <class T>
+inline Opened<T> opened_from(const CavityAdhesive<T>& law, T at, const Point<T>& peak) noexcept {
+  const FlattenedOpening<T> curve(law.E_star, law.c, peak);
+  const T least = T{} + adhesive::no_root, dent = max(at - curve.way * (curve.A + curve.B), least);
+  T R_open{};
+  if (any(law.pull > 0.0)) R_open = -curve.force(curve.extreme(3.0)) / (1.5 * law.pull);
+  return {dent, curve.extreme(1.0) * curve.y0 / adhesive::fold_share, R_open};
+}
+
+}  // namespace detail
+
+/// As the step of `Jkr`; load: the backbone beyond yield. Growth moves the opening curve; at its peak the force is the
+/// force of growth, so that the same step taken again gives the same bits. A contact that broke inside its dent forms
+/// again where the curve begins; the history is cleared when separated and delta <= 0.
+template <class T, class Load>
 inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
-                                    const typename CavityAdhesive<T>::State& before, T delta, T closing) noexcept {
+                                    const typename CavityAdhesive<T>::State& before, T delta, T closing,
+                                    Load load) noexcept {
   using namespace adhesive;
   const T zero{};
   const auto stood = before.root > 0.0;
@@ -327,14 +348,14 @@ inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
       at_touch = select(at_once, first.force - law.punch(first.radius), at_touch);
     }
     const T at = law.backbone_overlap(R_star, select(flows, delta, R_star));
-    const Point<T> peak = law.body.load(R_star, at);
-    const FlattenedOpening<T> curve(law.E_star, law.c, peak);
+    const Point<T> peak = load(at);
+    const auto opened = detail::opened_from(law, at, peak);
     point = select(flows, peak, point);
     a = select(flows, peak.radius, a);
     F = select(flows, peak.force - law.punch(peak.radius), F);
-    now_dent = select(flows, max(at - curve.way * (curve.A + curve.B), zero + no_root), now_dent);
-    root = select(flows, curve.extreme(1.0) * curve.y0 / fold_share, root);
-    if (any(law.pull > 0.0)) R_open = select(flows, -curve.force(curve.extreme(3.0)) / (1.5 * law.pull), R_open);
+    now_dent = select(flows, opened.dent, now_dent);
+    root = select(flows, opened.root, root);
+    R_open = select(flows, opened.R_open, R_open);
   }
   T jump{};
   if (any(forms)) jump = select(forms, on_touch(at_touch, own, closing), zero);
@@ -352,6 +373,12 @@ inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
           select(stands, a, zero),
           {select(keeps, select(grows, delta, before.delta_max), zero), select(stands, max(root, zero + no_root), zero),
            select(keeps, now_dent, zero), select(keeps, R_open, zero), jump, select(keeps, point, Point<T>{})}};
+}
+
+template <class T>
+inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
+                                    const typename CavityAdhesive<T>::State& before, T delta, T closing) noexcept {
+  return step(law, R_star, before, delta, closing, [&](T b) { return law.body.load(R_star, b); });
 }
 
 /// Work lost by yield [J] of a contact with this memory; what touch took of a contact that yields at once is
@@ -390,11 +417,10 @@ inline T plastic_work_of_step(const CavityAdhesive<T>& law, T R_star, const type
   return lost;
 }
 
-/// Energies that a step took for good.
+/// What adhesion lost in the jumps of a step [J].
 template <class T>
-inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
-                                  const typename CavityAdhesive<T>::State& before,
-                                  const typename CavityAdhesive<T>::State& after) noexcept {
+inline T jump_loss(const CavityAdhesive<T>& law, T R_star, const typename CavityAdhesive<T>::State& before,
+                   const typename CavityAdhesive<T>::State& after) noexcept {
   using namespace adhesive;
   const auto stood = before.root > 0.0, stands = after.root > 0.0;
   const auto dented = detail::has_dent(law, before);
@@ -419,7 +445,15 @@ inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
     }
     adhesive = select(ends, E, adhesive);
   }
-  return {epdem::plastic_work_of_step(law, R_star, before, after), adhesive};
+  return adhesive;
+}
+
+/// Energies that a step took for good.
+template <class T>
+inline adhesive::Losses<T> losses(const CavityAdhesive<T>& law, T R_star,
+                                  const typename CavityAdhesive<T>::State& before,
+                                  const typename CavityAdhesive<T>::State& after) noexcept {
+  return {epdem::plastic_work_of_step(law, R_star, before, after), jump_loss(law, R_star, before, after)};
 }
 
 /// Elastic and surface energy [J] of a contact at overlap `delta` <= delta_max, 0 for bodies apart.

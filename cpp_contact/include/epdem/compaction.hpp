@@ -27,20 +27,22 @@
 //    circle, 2 (E*/G) a_m (alpha_p - alpha). The bond breaks at strength times pi a_m^2, for as long as the contact
 //    lasts, or ends with the contact.
 // The law is that of the overlap alpha + v, v = u + q.
+// With adhesion alpha + v - e = alpha_b - d: the backbone at alpha_b is that of growth, the punch opens the rim by d. F
+// of 5 and P is the whole force, which makes the energies of all contacts a potential again; dents, 2 and 3 are those
+// of the backbone.
 #pragma once
 
-#include "law.hpp"
+#include "cavity_adhesive.hpp"
 
 namespace epdem {
-
-template <class T>
-struct Cavity;
 
 /// Whether hosts offer compaction with a law.
 template <class Law>
 inline constexpr bool compacts = false;
 template <class T>
 inline constexpr bool compacts<Cavity<T>> = true;
+template <class T>
+inline constexpr bool compacts<CavityAdhesive<T>> = true;
 
 /// Growth closes gaps of two spheres up to this share of the sum of their radii.
 inline constexpr double growth_reach = 0.25;
@@ -177,7 +179,7 @@ struct Growing {
 template <class T>
 EPDEM_INLINE BodySums<T> sums_of_step(const Dent<T>& sums, BodyMemory<T>& memory) noexcept {
   const T zero{}, one = constant<T>(1.0), full = max(memory.full, sums.full);
-  const auto falls = full > sums.held;
+  const auto falls = full > max(zero, sums.held);  // pulls alone have no Q
   const T root = sqrt(max(zero, select(falls, sums.held, one) / select(falls, full, one)));
   memory = {max(memory.pressure, sums.pressure), full, 1.0 - root * sqrt(root), memory.parted, memory.last};
   const T parted = 2.5 * memory.parted - 2.0 * memory.last + 0.5 * memory.old;
@@ -372,9 +374,62 @@ EPDEM_INLINE GrownEnd<T> end_of(const GrowthState<T>& s) noexcept {
   return {s.added, s.grown, s.screening, s.area, s.retreat, s.recovered, s.force};
 }
 
+namespace detail {
+
+/// The law without the punch.
+template <class T>
+EPDEM_INLINE const Cavity<T>& backbone_of(const Cavity<T>& law) noexcept {
+  return law;
+}
+template <class T>
+EPDEM_INLINE const Cavity<T>& backbone_of(const CavityAdhesive<T>& law) noexcept {
+  return law.body;
+}
+
+/// d [m] and P_t [N] at a peak.
+template <class T>
+struct Punch {
+  T opening, force;
+};
+
+template <class Law, class T = Number<Law>>
+EPDEM_INLINE Punch<T> punch_at(const Law& law, const Point<T>& peak) noexcept {
+  if constexpr (adheres<Law>) return {law.opening(peak.radius), law.punch(peak.radius)};
+  return {T{}, T{}};
+}
+
+/// The history at another added overlap, where it is renewed: its opening curve begins at the grown peak.
+template <class T, class M, class Load>
+inline State<CavityAdhesive<T>> grown_history(const CavityAdhesive<T>& law, T R_star, State<CavityAdhesive<T>> now,
+                                              M renewed, Load load) noexcept {
+  if (!any(renewed)) return now;
+  const auto dented = renewed & (now.delta_max > law.yield_overlap(R_star));
+  now.dent = select(renewed, T{}, now.dent);
+  if (any(dented)) {
+    const T b = law.backbone_overlap(R_star, select(dented, now.delta_max, R_star));
+    const Point<T> peak = load(b);
+    const Opened<T> opened = opened_from(law, b, peak);
+    now.point = select(dented, peak, now.point);
+    now.dent = select(dented, opened.dent, now.dent);
+    now.R_open = select(dented, opened.R_open, now.R_open);
+    now.root = select(dented & (now.root > 0.0), max(opened.root, T{} + adhesive::no_root), now.root);
+  }
+  return now;
+}
+
+}  // namespace detail
+
+/// With adhesion: the history before the step, at the overlap that is added in it.
+template <class Law, bool = adheres<Law>>
+struct GrownBefore {};
+template <class Law>
+struct GrownBefore<Law, true> {
+  State<Law> first;
+};
+
 /// A step of a contact that grows.
 template <class Law>
-struct GrownStep {
+struct GrownStep : GrownBefore<Law> {
   Step<Law> step;                     // of the overlap with growth
   Number<Law> overlap;                // with growth and retreat [m]
   Number<Law> reached;                // largest overlap without growth, less the retreat, before the step [m]
@@ -389,8 +444,10 @@ struct GrownStep {
 /// after the step and the dents to `c`.
 template <bool wall, class Law, class T = Number<Law>>
 EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodies, T R_star, const State<Law>& before,
-                                       T overlap, Growing<wall, T>& c, bool repeats) noexcept {
+                                       T overlap, [[maybe_unused]] T closing, Growing<wall, T>& c,
+                                       bool repeats) noexcept {
   const T zero{};
+  const auto& body = detail::backbone_of(law);
   GrownStep<Law> s{};
   GrowthState<T> last;
   copy_numbers<T, growth_values>(c.state, last);
@@ -405,7 +462,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   }
   const auto rests = known & (fabs(v.extrapolated - last.added) < at_rest * R_star) &
                      (fabs(v.grown - last.grown) < at_rest * R_star) &
-                     (fabs(pressure - last.pressure) < at_rest * law.Y);
+                     (fabs(pressure - last.pressure) < at_rest * body.Y);
   v.extrapolated = select(rests, last.added, v.extrapolated);
   v.grown = select(rests, last.grown, v.grown);
   pressure = select(rests, last.pressure, pressure);
@@ -440,26 +497,43 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   if (repeats) level = select(fabs(level - s.reached) < 1e-9 * fabs(s.reached), s.reached, level);
   s.delta_max = select((level < s.reached) & (s.reached < no_overlap), s.reached, level);
   s.overlap = level + v.extrapolated;
-  const T m = detail::yielded_share(law, R_star, s.delta_max + v.extrapolated);
-  const T soft = (loss.i + loss.j) * m;
-
   s.reached_grown = s.reached + v.extrapolated;
   State<Law> grown_before = before;
   grown_before.delta_max = s.reached_grown;
   const auto kept = [&](auto falls) __attribute__((always_inline)) { return falls & rests; };
   const auto load = [&](T b) __attribute__((always_inline)) {
-    return detail::grown_point(law, R_star, b, v.grown, pressure);
+    return detail::grown_point(body, R_star, b, v.grown, pressure);
   };
-  s.step = step_of_peak(law, R_star, grown_before, s.overlap, kept, load);
+  auto parts = !(overlap + v.extrapolated > 0.0);
+  T force;  // without a jump
+  if constexpr (adheres<Law>) {
+    const auto has_curve = (before.dent > 0.0) | (s.reached_grown <= law.yield_overlap(R_star));
+    s.first = detail::grown_history(law, R_star, grown_before, known & !(kept(known) & has_curve), load);
+    s.step = step(law, R_star, s.first, s.overlap, closing, load);
+    parts = parts & !(s.step.after.root > 0.0);
+    const auto forgot = (s.first.dent > 0.0) & !parts & (s.step.after.dent <= 0.0);  // the retreat alone opened it
+    if (any(forgot)) {
+      s.step.after.dent = select(forgot, s.first.dent, s.step.after.dent);
+      s.step.after.R_open = select(forgot, s.first.R_open, s.step.after.R_open);
+      s.step.after.point = select(forgot, s.first.point, s.step.after.point);
+    }
+    force = s.step.force - s.step.after.jump;
+  } else {
+    s.step = step_of_peak(law, R_star, grown_before, s.overlap, kept, load);
+    force = s.step.force;
+  }
 
   const Point<T>& peak = s.step.after.point;
-  const auto dented = m > 0.0, parts = !(overlap + v.extrapolated > 0.0);
+  const detail::Punch<T> punch = detail::punch_at(law, peak);
+  const T m = detail::yielded_share(body, R_star, s.delta_max + v.extrapolated + punch.opening);
+  const T soft = (loss.i + loss.j) * m;
+  const auto dented = (m > 0.0) & (peak.radius > 0.0);
   const Recovery<T> back = recovery(law.E_star, peak);
-  const T residual = max(zero, s.delta_max) - (1.0 - soft) * back.overlap;
+  const T residual = max(zero, s.delta_max + punch.opening) - (1.0 - soft) * back.overlap;
   const T area = select(dented, m * (peak.radius * peak.radius), zero);
   const T recovered = select(dented, m * back.overlap, zero);
   c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area, overlap,
-                             s.step.force, loss.i * recovered, loss.j * recovered, peak.force);
+                             force, loss.i * recovered, loss.j * recovered, peak.force - punch.force);
   if (!repeats) {
     const T own =
         detail::grown(c, growth(c.dents.i.cover, c.dents.i.volume), growth(c.dents.j.cover, c.dents.j.volume));
@@ -483,10 +557,10 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
                retreat,
                recovered,
                select(last.area > 0.0, last.recovered, recovered),
-               s.step.force,
+               force,
                c.state.broken};
   }
-  if constexpr (!wall)
+  if constexpr (!wall && !adheres<Law>)
     if (rarely(any(c.bond > 0.0))) {
       const T stretch = s.step.after.delta_max - back.overlap - s.overlap;
       const auto whole = (c.bond > 0.0) & dented & (c.state.broken == 0.0);
@@ -504,58 +578,6 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   }
   s.state = end_of(c.state);
   return s;
-}
-
-/// Energies of a step that grows, of second order in the time step; closing: closing speed at the half step times the
-/// time step [m]; holds: whether the elastic energy is requested. The plastic work of one contact may be negative: what
-/// grows a contact is paid by the dents of others.
-template <class Law, class T = Number<Law>>
-[[gnu::noinline]] NormalEnergies<T> grown_energies(const Law& law, T R_star, const Point<T>& peak_before,
-                                                   const GrownStep<Law>& s, T overlap, T closing, bool holds) noexcept {
-  const auto known = s.last.screening > 0.0, was_dented = s.last.area > 0.0, dented = s.state.area > 0.0;
-  const T one = constant<T>(1.0), zero{};
-  const T v = s.state.added, v0 = select(known, s.last.added, v), b = s.delta_max + v, b0 = s.reached + v0;
-  const T less = v - s.state.retreat, less0 = v0 - s.last.retreat;
-  const Point<T>& peak = s.step.after.point;
-  const Point<T> safe = select(dented, peak, Point<T>{one, one, zero});
-  const Point<T> safe0 = select(was_dented, peak_before, safe);
-  const auto stored = [&](auto yielded, const Point<T>& p, T delta_max, T delta) {
-    const T at = max(zero, delta);
-    if (!any(!yielded)) return stored_work(law.E_star, p, delta_max, at);
-    return select(yielded, stored_work(law.E_star, p, delta_max, at), hertz_work(law.E_star, R_star, at));
-  };
-  // below the peak the overlap moves on a branch, which the sums change: the change at the middle of the step
-  const T middle =
-      min(overlap - 0.5 * closing, select(was_dented, s.reached + min(s.last.retreat, s.state.retreat), overlap));
-  const auto yields = dented & (overlap - s.state.retreat >= s.reached);
-  T lost{}, held{};
-  if (any(!yields)) {
-    if (holds) held = stored(dented, safe, b, s.overlap);
-    // a peak that stays: the sums move the overlap alone
-    const auto stays = (was_dented & dented & (b == b0) & (safe.force == safe0.force)) | !(was_dented | dented);
-    lost = 0.5 * (s.last.force + s.state.force) * (less0 - less);
-    if (any(!(stays | yields)))
-      lost =
-          select(stays, lost, stored(was_dented, safe0, b0, middle + less0) - stored(dented, safe, b, middle + less));
-  }
-  if (any(yields)) {
-    const T delta_Y = law.elastic_overlap(R_star);
-    const T from = select(yields, max(delta_Y, select(known, b0, zero)), delta_Y), to = select(yields, b, delta_Y);
-    const T F0 = select(was_dented, safe0.force, hertz_point(law.E_star, R_star, from).force);
-    const T U0 = select(was_dented, recovered_work(law.E_star, safe0), hertz_work(law.E_star, R_star, from));
-    const T U = recovered_work(law.E_star, safe);
-    T work = 0.5 * (to - from) * (F0 + safe.force);
-    const auto leaps = yields & (to > 1.1 * from);
-    if (any(leaps)) work = select(leaps, detail::work_of_leap(law, R_star, from, to, F0, safe.force), work);
-    lost = select(yields, work + U0 - U - 0.5 * (s.last.force + safe.force) * (less - less0), lost);
-    held = select(yields, U, held);
-  }
-  // what the bodies take of the energy at the stationary Q: 3/7 N Q^(7/3) is the sum of 3/7 Q c d_e F
-  const auto share = [&](const GrownEnd<T>& at) {
-    return select(at.area > 0.0, 3.0 / 7.0 * at.force * ((1.0 - at.screening) * at.recovered - at.retreat), zero);
-  };
-  const T taken = share(s.state), taken0 = share(s.last);
-  return {lost + (taken - taken0) + s.bond_loss, held - taken + s.stretched, T{}};
 }
 
 }  // namespace epdem

@@ -8,6 +8,7 @@
 
 #include "adhesive.hpp"
 #include "exists.hpp"
+#include "grown_energies.hpp"
 #include "settings.hpp"
 #include "sub_models.hpp"
 #include "tangential.hpp"
@@ -140,7 +141,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
       }
     });
   } else {
-    const GrownStep<Law> grown = grown_step(law, pair.bodies, R_star, before, overlap, growth, repeats);
+    const GrownStep<Law> grown = grown_step(law, pair.bodies, R_star, before, overlap, closing, growth, repeats);
     now.step = grown.step;
     now.overlap = grown.overlap;
     reached = grown.reached_grown;
@@ -152,8 +153,13 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
         Copy() noexcept {}
       } copy;
       copy_numbers<T, sizeof copy / sizeof(T)>(grown, copy.step);
-      const auto peak = before.point;
-      return grown_energies(law, R_star, peak, copy.step, overlap, closing, holds);
+      if constexpr (adheres<Law>) {
+        const State<Law> first = before;
+        return grown_energies(law, R_star, first, copy.step, overlap, closing, holds);
+      } else {
+        const auto peak = before.point;
+        return grown_energies(law, R_star, peak, copy.step, overlap, closing, holds);
+      }
     });
     growth.keep();
   }

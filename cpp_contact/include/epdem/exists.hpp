@@ -39,7 +39,8 @@ struct Gap {
 /// Whether bodies are attached across the gap, or grown across it. history: null of a new contact; repeats: the last
 /// step is evaluated once more, where bodies that have just parted still have their last force.
 inline bool exists(const GapPlaces& at, const double* history, const Gap& gap, bool repeats) noexcept {
-  if (at.growth < 0) return history && at.root >= 0 && (history[at.root] > 0.0 || (repeats && history[at.jump] != 0.0));
+  if (history && at.root >= 0 && (history[at.root] > 0.0 || (repeats && history[at.jump] != 0.0))) return true;
+  if (at.growth < 0) return false;
   if (repeats && !history) return false;
   const auto c = growing_pair(gap.radius_i, gap.radius_j, gap.i, gap.j, history ? history + at.growth : nullptr);
   return gap.radius_i + gap.radius_j - sqrt(gap.rsq) + added_overlap(c, repeats).extrapolated > 0.0;

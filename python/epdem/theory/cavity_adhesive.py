@@ -259,11 +259,12 @@ class CavityAdhesive(JKR):
         """Contact radius a_0 [m] of a contact that has just formed at alpha = 0."""
         return self.radius(0.0)
 
-    def branch(self, a_max: Numbers) -> tuple[Flattened, Numbers]:
+    def branch(self, a_max: Numbers, factor: Numbers = 1.0) -> tuple[Flattened, Numbers]:
+        """As of `AdhesiveCurve`; factor: force of the backbone at its peak over that of the law, with compaction."""
         top = np.maximum(np.asarray(a_max, float), self.yield_radius)
         yields = top > self.yield_radius
         at = self.backbone_overlap(top)
-        F, tau = self.backbone.force(at), self.backbone.flatness(at)
+        F, tau = factor * self.backbone.force(at), self.backbone.flatness(at)
         opened = Flattened(E_star=self.E_star, Gamma=self.Gamma, force=F, radius=top, flatness=tau)
         dent = at - opened.way * (opened.A + opened.B)
         return opened, np.where(yields, np.maximum(dent, 0.0), 0.0)

@@ -147,8 +147,9 @@ def model(case: SceneCase) -> Model:
             "contact.bond_strength: bonds hold contacts with law.compaction = true, without contact.cohesion and with "
             "contact.tangential = 'history'; change these"
         )
-    if result.adheres and contact.cohesion is not None:
-        raise CaseError(f"contact.cohesion: law {result.law} has its attraction already; remove one of them")
+    for key, given in {"cohesion": contact.cohesion, "bond_strength": contact.bond_strength}.items():
+        if result.adheres and given is not None:
+            raise CaseError(f"contact.{key}: law {result.law} has its attraction already; remove one of them")
     if result.adheres and NODES[contact.tangential]:
         raise CaseError(f"contact.tangential = {contact.tangential!r}: laws with adhesion have 'history' only; take it")
     if not result.sliding and contact.tangential_restitution is not None:

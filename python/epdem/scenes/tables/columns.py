@@ -14,9 +14,11 @@ import pandas as pd
 
 from ...errors import EngineError
 from ...laws.library import Law
-from ...laws.strengths import LawSpec
+from ...laws.strengths import ADHESION, LawSpec
 from ...theory.adhesion import plastic_work
+from ...theory.adhesive_curve import AdhesiveCurve
 from ...theory.backbones import JKR
+from ...theory.cavity_adhesive import CavityAdhesive
 from ...theory.numerics import gauss
 from ...theory.pair import contact_conductance
 from ..plan import quantities
@@ -341,11 +343,22 @@ def _one_law(spec: LawSpec, E_star: float, contacts: pd.DataFrame) -> tuple[Arra
         for name in ("R_star", "radius", "overlap", "largest", "screening", "grown_overlap", "body_pressure", "retreat")
     )
     largest = np.maximum(largest, overlap)
-    if spec.adheres:
-        adhesive = spec.adhesive(E_star=E_star, R_star=R, radius=radius)
-        return _with_adhesion(adhesive, overlap, largest, contacts["attached"].to_numpy())
-    theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
     share = float(spec.curvature_share(R[0], radius[0]))
+    if spec.adheres:
+        adhesive, attached = spec.adhesive(E_star=E_star, R_star=R, radius=radius), contacts["attached"].to_numpy()
+        top = np.maximum(adhesive.radius(largest), adhesive.touch_radius)
+        if not (isinstance(adhesive, CavityAdhesive) and ((screening < 1.0) | (grown > 0.0)).any()):
+            return _with_adhesion(adhesive, adhesive.branch(top), top, overlap, attached)
+        body = adhesive.backbone
+        law = Law(body.name, E_star=E_star, share=share, **{k: x for k, x in spec.parameters.items() if k != ADHESION})
+        b = np.asarray(adhesive.backbone_overlap(top), float)
+        yielded = np.asarray(np.maximum(1.0 - body.yield_overlap / b, 0.0))
+        k = _of_growth(law, R, b, grown, 2.0 / 3.0 * spec.parameters["yield_stress"] + pressure, yielded)
+        branch, dent = adhesive.branch(top, k)
+        found = _with_adhesion(adhesive, (branch, dent), top, overlap, attached)
+        back = np.where(yielded > 0.0, (1.0 - screening) * yielded * (b - dent), 0.0)  # of its recovery
+        return *found[:2], found[2] + back, *found[3:5], found[5] - 3.0 / 7.0 * found[0] * (back - retreat)
+    theory = spec.backbone(E_star=E_star, R_star=R, radius=radius)
     law = Law(spec.name, E_star=E_star, share=share, **spec.parameters)
     yielded = np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
     factor = (
@@ -381,9 +394,10 @@ def _of_growth(law: Law, R: Array, largest: Array, grown: Array, pressure: Array
     return 1.0 - excess / np.maximum(force, 1e-300)
 
 
-def _with_adhesion(law: JKR, overlap: Array, largest: Array, attached: Array) -> tuple[Array, ...]:
-    top = np.maximum(law.radius(largest), law.touch_radius)
-    branch, dent = law.branch(top)
+def _with_adhesion(
+    law: JKR, opening: tuple[AdhesiveCurve, Array], top: Array, overlap: Array, attached: Array
+) -> tuple[Array, ...]:
+    branch, dent = opening
     a = np.where(attached, branch.radius(overlap - dent), 0.0)
     force, energy = (np.where(attached, found, 0.0) for found in (branch.force(a), branch.energy(a)))
     return force, a, dent, np.where(dent > 0, top, 0.0), plastic_work(law, top), energy
