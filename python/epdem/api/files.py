@@ -227,7 +227,7 @@ def marked(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
 
 
 @dataclass(frozen=True)
-class Stored:
+class Stored(h5.WithTables):
     """Results of a folder. Each of its `tables` is an attribute, too: `read("runs/settle_glass").rows`.
 
     Impacts have `comparison` (measured and predicted), `impacts`, `predictions` and `paths`; scenes the tables of
@@ -240,15 +240,6 @@ class Stored:
     passed: bool
     text: str
     tables: dict[str, pd.DataFrame]
-
-    def __getattr__(self, name: str) -> pd.DataFrame:
-        tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
-        if name in tables:
-            return tables[name]
-        raise AttributeError(f"no table {name!r}; there are {', '.join(tables)}")
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self.tables]
 
     def __repr__(self) -> str:
         return two_lines(self.title, self.passed, self.folder, self.tables)

@@ -28,6 +28,19 @@ class Column(NamedTuple):
     sentence: str
 
 
+class WithTables:
+    """What has each of its `tables` as an attribute, too."""
+
+    def __getattr__(self, name: str) -> pd.DataFrame:
+        tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
+        if name in tables:
+            return tables[name]
+        raise AttributeError(f"no table {name!r}; there are {', '.join(tables)}")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.__dict__["tables"]]
+
+
 @contextlib.contextmanager
 def new_file(path: Path) -> Iterator[h5py.File]:
     """An HDF5 file in memory that replaces `path` at the end of the block: a full disk leaves no half file."""

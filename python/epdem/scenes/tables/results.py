@@ -30,7 +30,7 @@ FILES = "files"  # group of the files that the case names
 
 
 @dataclass
-class SceneResults:
+class SceneResults(h5.WithTables):
     """Tables by name (rows, particles, contacts, energy_balance, checks), deck texts, attributes of the file.
 
     files: the contents of those that the case names; None: of an earlier version, which did not store them.
@@ -41,12 +41,6 @@ class SceneResults:
     tables: dict[str, pd.DataFrame] = field(default_factory=dict)
     decks: dict[str, str] = field(default_factory=dict)
     files: dict[str, bytes] | None = field(default_factory=dict)
-
-    def __getattr__(self, name: str) -> pd.DataFrame:
-        tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
-        if name in tables:
-            return tables[name]
-        raise AttributeError(f"no table {name!r}; there are {', '.join(tables)}")
 
 
 def write(path: Path, p: ScenePlan, results: SceneResults, stored: SceneResults | None = None) -> None:
