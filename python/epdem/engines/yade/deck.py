@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """YADE's decks of impacts and of scenes: values of the templates, tables of spheres and triangles."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isinf
 
@@ -130,16 +130,6 @@ class SceneDeck:
     loads: tuple[tuple[str, Sequence[float] | None], ...]
 
 
-def _phases(p: ScenePlan) -> Iterator[DeckPhase]:
-    for run in p.phase_steps:
-        yield DeckPhase(
-            run=run,
-            motions=motions(p, run),
-            late=late_spheres(p, run.name),
-            stop=stop(p, run),
-        )
-
-
 def _placed(p: ScenePlan) -> bool:
     """Whether there are spheres at the start."""
     first = p.phases[0].name
@@ -152,7 +142,8 @@ def deck(p: ScenePlan) -> SceneDeck:
     skin = p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}")
     reach = p.largest * (ENLARGED if p.model.compaction else 1.0) + skin
     refuse_narrow(p, 4.0 * reach, "YADE finds no contacts of spheres whose bounds are half of a period")
-    m, phases, every_wall = p.model, tuple(_phases(p)), walls(p)
+    m, every_wall = p.model, walls(p)
+    phases = tuple(DeckPhase(x, motions(p, x), late_spheres(p, x.name), stop(p, x)) for x in p.phase_steps)
     shapes = ("Sphere", *sorted({w.shape.capitalize() for w in every_wall.values()}))
     sides = zip(p.scene.periods, p.box[0::2], p.box[1::2], strict=True)
     x, y, z = (period or 2.0 * (high - low) for period, low, high in sides)
