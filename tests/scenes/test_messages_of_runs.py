@@ -96,9 +96,9 @@ def test_frames_and_rows_of_scenes(tmp_path):
     with says(f"the rows end at step 7 of {q.steps}; run the case again"):
         yade_tables.rows(q, out)
     with says(r"particles.0.npy: incomplete \(.*\); run the case again"):
-        yade_tables.particles(Frames(q, tmp_path, yade_tables.kinds(q)))
+        Frames(q, tmp_path, yade_tables.kinds(q)).spheres()
     shutil.copytree(STORED / "settle", tmp_path / "run")
-    whole = scene_tables.particles(Frames(p, tmp_path / "run", scene_tables.kinds(p)))
+    whole = Frames(p, tmp_path / "run", scene_tables.kinds(p)).spheres()
     with says("the frame of step 1250 is damaged; run the case again"):
         columns.whole(p, whole.assign(radius=-1.0), tmp_path)
     numbers = {"step": 1250, "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}
@@ -108,7 +108,7 @@ def test_frames_and_rows_of_scenes(tmp_path):
     twice = tmp_path / "run/particles.1250.bin"
     twice.write_bytes(2 * twice.read_bytes())
     with says(r"particles.1250.bin: incomplete \(.*\); run the case again"):
-        scene_tables.particles(Frames(p, tmp_path / "run", scene_tables.kinds(p)))
+        Frames(p, tmp_path / "run", scene_tables.kinds(p)).spheres()
 
 
 @pytest.mark.parametrize("name", ["compaction", "yade_compaction"])

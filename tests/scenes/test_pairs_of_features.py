@@ -514,10 +514,10 @@ def test_a_drawn_scene_goes_on_from_a_restart_file_to_the_same_bits(chosen, rank
     assume(not p.ends_early)
     launcher.run("in.scene", place, ranks=ranks)
     last = Frames(p, place, liggghts_tables.kinds(p), p.frame_steps(p.frames)[:-1])
-    whole = liggghts_tables.particles(last)
+    whole = last.spheres()
     *steps, _ = restart_steps(place)
     for step in steps[-2:]:
         (place / f"particles.{p.steps}.bin").unlink()
         deck.write_resume(p, place, step)
         launcher.run("in.resume", place, ranks=ranks, append=True)
-        assert liggghts_tables.particles(last).equals(whole)
+        assert last.spheres().equals(whole)

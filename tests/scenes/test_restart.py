@@ -269,7 +269,7 @@ def poured(tmp_path_factory):
     case = parse(data | {"scene": data["scene"] | scene, "output": output, "numerics": {"error": 0.1}})
     p = write_deck(case, folder)
     launcher.run("in.scene", folder)
-    return p, folder, tables.particles(Frames(p, folder, tables.kinds(p)))
+    return p, folder, Frames(p, folder, tables.kinds(p)).spheres()
 
 
 def continued(poured, begin: int, tmp_path):
@@ -279,7 +279,7 @@ def continued(poured, begin: int, tmp_path):
         (tmp_path / path.name).write_bytes(path.read_bytes())
     deck.write_resume(p, tmp_path, begin)
     launcher.run("in.resume", tmp_path)
-    return tables.particles(Frames(p, tmp_path, tables.kinds(p), range(begin + 1)))
+    return Frames(p, tmp_path, tables.kinds(p), range(begin + 1)).spheres()
 
 
 def test_a_run_interrupted_while_it_pours_ends_with_all_its_spheres(poured, tmp_path):
@@ -325,7 +325,7 @@ def test_a_stream_that_has_ended_does_not_begin_again_where_spheres_are_still_to
     data |= {"output": {"rows": 28, "particles": 28, "restarts": 28}, "numerics": {"time_step": "1e-5 s"}}
     p = write_deck(parse(data), tmp_path)
     launcher.run("in.scene", tmp_path)
-    whole = tables.particles(Frames(p, tmp_path, tables.kinds(p)))
+    whole = Frames(p, tmp_path, tables.kinds(p)).spheres()
     counts = whole.groupby("step")["id"].count()
     begin = next(s for s in restart_steps(tmp_path) if counts.get(s) == 10)
     (tmp_path / "again").mkdir()

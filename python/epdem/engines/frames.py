@@ -16,6 +16,7 @@ from ..base.processes import ROW
 from ..errors import CaseError, EngineError
 from ..jobs.engine import Report
 from ..scenes.plan.plan import ScenePlan
+from ..scenes.tables import columns
 from . import log
 from .input_script import StopCondition
 
@@ -40,6 +41,10 @@ class Frames:
             tables.append(_read(self.folder / name.format(step), read))
             tables[-1].insert(0, "step", step)
         return pd.concat(tables, ignore_index=True)
+
+    def spheres(self) -> pd.DataFrame:
+        """Every sphere of every frame, SI. Raises EngineError for a frame that is not whole."""
+        return columns.whole(self.plan, self.table("particles"), self.folder)
 
     def whole_at(self, step: int) -> dict[Path, bytes]:
         """The files of a step that are whole: what a run that goes on there computes before its first step differs."""

@@ -8,6 +8,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, ClassVar, TypeVar
 
+import pandas as pd
+
 from ..base import rendering as decks
 from ..base.files import stored_results
 from ..base.processes import crowded
@@ -19,7 +21,7 @@ from ..scenes.plan.limits import refuse_bodies_in_moved_walls
 from ..scenes.plan.model import Model
 from ..scenes.plan.phases import Phase
 from ..scenes.plan.plan import ScenePlan
-from ..scenes.tables.columns import named_rows, with_first_works
+from ..scenes.tables.columns import complete, named_rows, with_first_works
 from . import log
 from .frames import Frames, choose, pruning
 from .input_script import impact_data
@@ -39,7 +41,7 @@ class Host(Engine[Any, Any]):
     # patterns of files that an earlier run of a scene may have left in the folder
     leftovers = "particles.*.* contacts*.*.* wall_contacts.*.txt stress_*.*.* picture.*.ppm restart.*.bin in.resume"
     scene_deck: ModuleType  # deck and files of a scene; with Feature.RESTART write_resume
-    # trajectory of impacts; kinds of frames of a scene, from which particles, contact_table and wall_table; rows
+    # trajectory of impacts; of a scene kinds of frames ("particles", "contacts", "stress_WALL"), contacts and rows
     tables: ModuleType
 
     def missing(self) -> str | None:
@@ -120,12 +122,17 @@ class Host(Engine[Any, Any]):
         plan = plan.with_ways(rows)
         found: Tables = {"rows": named_rows(plan, rows)}
         if plan.frames:
-            found["particles"] = own.particles(frames)
+            found["particles"] = spheres = frames.spheres()
         if plan.contacts:
-            found["contacts"] = own.contact_table(frames, found["particles"])
-            found["particles"] = with_first_works(plan, found["particles"], found["contacts"])
+            parts = own.contacts(frames, spheres)
+            raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
+            found["contacts"] = complete(plan, raw, spheres, folder)
+            found["particles"] = with_first_works(plan, spheres, found["contacts"])
         if plan.stress_walls:
-            found["walls"] = own.wall_table(frames)
+            stresses = {name: frames.table(f"stress_{name}") for name in plan.stress_walls}
+            for name, table in stresses.items():
+                table.insert(1, "wall", name)
+            found["walls"] = pd.concat(stresses.values(), ignore_index=True).astype({"triangle": int})
         return found | {"phases": plan.phase_table}
 
 

@@ -52,36 +52,25 @@ def kinds(p: ScenePlan) -> Kinds:
     """The files of frames: spheres, contacts between them, and with each wall."""
     values = ["overlap", "delta_max", "attached", *[*columns.GROWTH] * p.model.compaction, *columns.FORCE]
     found = {"particles": (p.frame_steps(p.frames), columns.columns_of_frames(p))} if p.frames else {}
-    found |= {f"stress_{wall_id(name)}": (p.frame_steps(p.frames), [*TRIANGLES]) for name in p.stress_walls}
     if p.contacts:
         steps, of_wall = p.frame_steps(p.contacts), ["i", *values, *columns.NORMAL]
         found["contacts"] = steps, ["i", "j", *values]
         found |= {f"contacts_{wall_id(name)}": (steps, of_wall) for name in contact_walls(p)}
         gates = {w.name: p.frame_steps_with(w.name, p.contacts) for w in p.scene.gates}
         found |= {f"contacts_{wall_id(name)}": (own, of_wall) for name, own in gates.items() if own}
-    return {k: (f"{k}.{{}}.txt", steps, partial(text_frame, names=names)) for k, (steps, names) in found.items()}
+    files: Kinds = {
+        k: (f"{k}.{{}}.txt", steps, partial(text_frame, names=names)) for k, (steps, names) in found.items()
+    }
+    for name in p.stress_walls:
+        file = f"stress_{wall_id(name)}.{{}}.txt"
+        files[f"stress_{name}"] = file, p.frame_steps(p.frames), partial(text_frame, names=[*TRIANGLES])
+    return files
 
 
-def particles(frames: Frames) -> pd.DataFrame:
-    """Every sphere of every frame."""
-    return columns.whole(frames.plan, frames.table("particles"), frames.folder)
-
-
-def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
+def contacts(frames: Frames, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     """Every contact of every frame."""
     found = [frames.table("contacts").assign(wall="")]
     for name in (w.name for w in frames.plan.scene.wall):
         if (kind := f"contacts_{wall_id(name)}") in frames.kinds:
             found.append(frames.table(kind).assign(wall=name, j=0))
-    raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
-    return columns.complete(frames.plan, raw, spheres, frames.folder)
-
-
-def wall_table(frames: Frames) -> pd.DataFrame:
-    """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS."""
-    tables = []
-    for name in frames.plan.stress_walls:
-        table = frames.table(f"stress_{wall_id(name)}").astype({"triangle": int})
-        table.insert(1, "wall", name)
-        tables.append(table)
-    return pd.concat(tables, ignore_index=True)
+    return found

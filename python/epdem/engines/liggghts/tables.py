@@ -88,11 +88,6 @@ def _particle_names(p: ScenePlan) -> list[str]:
     return [*names, *p.works]
 
 
-def particles(frames: Frames) -> pd.DataFrame:
-    """Every particle of every frame, sorted by step and id. Raises EngineError for a frame that is not whole."""
-    return columns.whole(frames.plan, frames.table("particles"), frames.folder)
-
-
 def _primitives(p: ScenePlan, in_frames: pd.DataFrame) -> list[pd.DataFrame]:
     """Contacts with walls that are a formula: overlap by it, its largest value from LIGGGHTS's memory of the wall."""
     found, gates = [], {w.name for w in p.scene.gates}
@@ -107,12 +102,8 @@ def _primitives(p: ScenePlan, in_frames: pd.DataFrame) -> list[pd.DataFrame]:
     return found
 
 
-def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
-    """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the primitives and all
-    that it has of gates.
-
-    Raises EngineError as `particles` does.
-    """
+def contacts(frames: Frames, spheres: pd.DataFrame) -> list[pd.DataFrame]:
+    """Every contact of every frame; `spheres` loses the forces of the primitives and all that it has of gates."""
     p = frames.plan
     parts = [frames.table("contacts").assign(wall=""), *_primitives(p, spheres)]
     gates = {w.name for w in p.scene.gates}
@@ -125,8 +116,7 @@ def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
         off = touched[POINTS[3:]].to_numpy() - touched[POINTS[:3]].to_numpy()
         touched[columns.NORMAL] = off / np.linalg.norm(off, axis=1, keepdims=True)
         parts.append(touched.drop(columns=POINTS).assign(j=0, wall=wall))
-    raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-    return columns.complete(p, raw, spheres, frames.folder)
+    return parts
 
 
 def _fields(path: Path) -> dict[str, np.ndarray]:
@@ -146,14 +136,4 @@ def _stresses(p: ScenePlan, wall: str, path: Path) -> pd.DataFrame:
     count = len(fields["area"])
     if count != len(p.triangles[wall]):
         raise EngineError(f"{path}: {count} triangles, expected {len(p.triangles[wall])}")
-    columns = {column: fields.get(field, np.zeros(count)) for field, column in COLUMNS.items()}
-    return pd.DataFrame({"wall": wall} | columns)
-
-
-def wall_table(frames: Frames) -> pd.DataFrame:
-    """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where not requested) in every frame.
-
-    Raises EngineError for a file that is not whole.
-    """
-    found = [frames.table(f"stress_{name}") for name in frames.plan.stress_walls]
-    return pd.concat(found, ignore_index=True).astype({"triangle": int})
+    return pd.DataFrame({column: fields.get(field, np.zeros(count)) for field, column in COLUMNS.items()})

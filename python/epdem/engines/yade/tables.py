@@ -50,16 +50,20 @@ def kinds(p: ScenePlan) -> Kinds:
         "contacts": (p.contacts, CONTACT if p.model.compaction else CONTACT[:11]),
     }
     return {
-        kind: (f"{kind}.{{}}.npy", p.frame_steps(every), partial(_frame, names=names))
+        kind: (f"{kind}.{{}}.npy", p.frame_steps(every), partial(_frame, p, names))
         for kind, (every, names) in found.items()
         if every
     }
 
 
-def _frame(path: Path, names: list[str]) -> pd.DataFrame:
+def _frame(p: ScenePlan, names: list[str], path: Path) -> pd.DataFrame:
     table = pd.DataFrame(np.load(path), columns=names)
     if "overlap" in names:
         table["delta_max"] = table["delta_max"].fillna(table["overlap"])  # of a law without history
+        return table
+    for axis, low, period in zip("xyz", p.box[0::2], p.scene.periods, strict=True):
+        if period:  # YADE does not put back what leaves its periodic cell
+            table[axis] = (table[axis] - low) % period + low
     return table
 
 
@@ -68,16 +72,7 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     return log.scene_rows(p, out)
 
 
-def particles(frames: Frames) -> pd.DataFrame:
-    """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    p, table = frames.plan, frames.table("particles")
-    for axis, low, period in zip("xyz", p.box[0::2], p.scene.periods, strict=True):
-        if period:  # YADE does not put back what leaves its periodic cell
-            table[axis] = (table[axis] - low) % period + low
-    return columns.whole(p, table, frames.folder)
-
-
-def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
+def contacts(frames: Frames, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     """Every contact of every frame."""
     p, raw, folder = frames.plan, frames.table("contacts"), frames.folder
     walls = np.array(["", *wall_names(p)])
@@ -89,4 +84,4 @@ def contact_table(frames: Frames, spheres: pd.DataFrame) -> pd.DataFrame:
     beyond = raw["j"] - p.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
-    return columns.complete(p, raw, spheres, folder)
+    return [raw]
