@@ -173,9 +173,9 @@ def tabor_number(law: AdhesiveCurve, *, z_0: Numbers = 0.2e-9) -> Numbers:
     return np.cbrt(law.R_star * (law.Gamma / law.E_star) ** 2) / number("z_0", z_0)
 
 
-def warning(law: AdhesiveCurve, *, z_0: Numbers = 0.2e-9) -> str | None:
+def warning(law: AdhesiveCurve) -> str | None:
     """One sentence if an adhesive contact lies outside the domain of JKR (Tabor's number below 3), else None."""
-    numbers = np.asarray(tabor_number(law, z_0=z_0) + 0.0 * law.Gamma)
+    numbers = np.asarray(tabor_number(law) + 0.0 * law.Gamma)
     low = numbers[(numbers > 0) & (numbers < TABOR_MIN)]
     if not low.size:
         return None

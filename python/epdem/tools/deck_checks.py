@@ -31,9 +31,7 @@ class _Deck:
     steps: list[tuple[str, float]] = field(default_factory=list)
     known: dict[str, str] = field(default_factory=dict)  # variables with a plain value
     walls: list[str] = field(default_factory=list)
-    renewed: list[tuple[str, str]] = field(
-        default_factory=list
-    )  # plastic walls without a mesh that a deck defines again
+    renewed: list[tuple[str, str]] = field(default_factory=list)  # plastic walls without a mesh, defined again
     restarts: list[tuple[str, str]] = field(default_factory=list)
 
     def number(self, word: str) -> float:

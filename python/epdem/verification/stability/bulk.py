@@ -141,8 +141,8 @@ def balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return table
 
 
-def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int = 2) -> Row:
-    """Run a scene on 1 and on `ranks` ranks and judge it. Raises EngineError if the engine fails.
+def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path) -> Row:
+    """Run a scene on 1 and on 2 ranks and judge it. Raises EngineError if the engine fails.
 
     rise: largest rise of the total energy, plastic work included, between two frames; off: largest distance of the
     total from that at the start; plastic: work lost for good, all over the energy brought in. first_difference,
@@ -152,7 +152,7 @@ def judge_scene(case: SceneCase, tool: SceneEngine, folder: Path, *, ranks: int 
     p = with_step(case, SHARE * stable_step(case, 0.0))
     one = run_plan(p, tool, folder)
     table = balance(p, one)
-    frames = one["particles"], run_plan(p, tool, folder / "ranks", ranks=ranks)["particles"]
+    frames = one["particles"], run_plan(p, tool, folder / "ranks", ranks=2)["particles"]
     brought = table["kinetic"].iloc[0] + table["work"].iloc[-1]
     apart = differences(*frames)
     ends = [last_frame(frame) for frame in frames]
@@ -193,9 +193,7 @@ def _dissipated(law: str, time_step: float, tool: SceneEngine, folder: Path) -> 
     return np.asarray(last.sort_values("id")["plastic_work"])
 
 
-def convergence(
-    laws: list[str], tool: SceneEngine, *, shares: tuple[float, ...] = SHARES, progress: Progress = silent
-) -> pd.DataFrame:
+def convergence(laws: list[str], tool: SceneEngine, *, shares: tuple[float, ...] = SHARES) -> pd.DataFrame:
     """Error of the mean dissipated energy, and `rms` error of a sphere's, both over the mean; a row per law and share.
 
     The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow. All
@@ -208,11 +206,8 @@ def convergence(
         folder = Path(scratch)
         least = min(stable_step(scene_case("shock", law, folder, lattice=LATTICE), 0.0) for law in laws)
         for law in laws:
-            progress(f"bulk error: {law}, reference")
-            reference, deviations = _dissipated(law, FINEST * min(shares) * least, tool, folder), []
-            for share in shares:
-                progress(f"bulk error: {law}, {share:g} of the limit")
-                deviations.append(_dissipated(law, share * least, tool, folder) / reference.mean())
+            reference = _dissipated(law, FINEST * min(shares) * least, tool, folder)
+            deviations = [_dissipated(law, share * least, tool, folder) / reference.mean() for share in shares]
             off = np.array(deviations) - reference / reference.mean()
             table = pd.DataFrame({"model": f"{tool.name}, {law}", "spheres": math.prod(LATTICE), "share": list(shares)})
             table["error"], table["rms"] = np.abs(off.mean(axis=1)), np.sqrt((off**2).mean(axis=1))

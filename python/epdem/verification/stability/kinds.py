@@ -272,9 +272,7 @@ def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
     return v / float(x.speed[0])
 
 
-def floors(
-    law: str, benches: Sequence[Bench], *, times: Sequence[float] = (1e-4, 1e-2, 3.0, 1e2), share: float = 0.01
-) -> pd.DataFrame:
+def floors(law: str, benches: Sequence[Bench], *, times: Sequence[float] = (1e-4, 1e-2, 3.0, 1e2)) -> pd.DataFrame:
     """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long
     double over 8 phases.
 
@@ -283,7 +281,7 @@ def floors(
     rows = []
     for t in times:
         s = setting(build("roundoff", ratio=1e4, times=t), law)
-        x, dt = s.x, share * s.limit
+        x, dt = s.x, 0.01 * s.limit
         steps, gap = s.steps(dt), starting_phases(8) * s.x.speed[0] * dt
         one = ImpactNumbers(R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=dt, gap=gap)
         exact = native.impacts_long_double(x.native_law(), steps=steps, **one)["rebound_speed"] / x.speed[0]
