@@ -62,6 +62,10 @@ def shared(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def started_yade(tmp_path_factory):
+    """The folder of the program `yade`; runs of planted faults take that of the test that calls them."""
+    if folder := os.environ.get("STARTED_YADE"):
+        yield folder
+        return
     with warm_yade.warm_yade(tmp_path_factory.mktemp("yade")) as folder:
         yield folder
 
@@ -71,7 +75,9 @@ def one_yade(request, monkeypatch):
     """Scripts of YADE run in children of one YADE, but in tests with the mark `yade("alone")`."""
     mark = request.node.get_closest_marker("yade")
     if mark and "alone" not in mark.args:
-        monkeypatch.setenv("PATH", f"{request.getfixturevalue('started_yade')}:{os.environ['PATH']}")
+        folder = str(request.getfixturevalue("started_yade"))
+        monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+        monkeypatch.setenv("STARTED_YADE", folder)
 
 
 def pytest_collection_modifyitems(items):
