@@ -208,7 +208,14 @@ EPDEM_INLINE Lanes close_sums_of(const BodyRows r, RowOf row) {
   const auto put = [=](double* to, int stride, const Columns& of) __attribute__((always_inline)) {
     rows(of, [=](int l, const Row& numbers) __attribute__((always_inline)) { store(to + stride * row(l), numbers); });
   };
-  const Columns dents = four(r.sums, dent_sums), last_dents = four(r.sums + 2, dent_sums);
+  const Columns dents = four(r.sums, dent_sums);
+  if (!any((dents.a > 0.0) | (dents.c > 0.0) | (dents.d > 0.0))) {  // as where no sphere touches another
+    put(r.bodies, body_values, Columns{});
+    put(r.memory, r.memory_stride, Columns{});
+    put(r.memory + 1, r.memory_stride, Columns{});
+    return Lanes{};
+  }
+  const Columns last_dents = four(r.sums + 2, dent_sums);
   const Columns kept = four(r.memory, r.memory_stride), last_kept = four(r.memory + 1, r.memory_stride);
   BodyMemory<Lanes> memory{kept.a, kept.b, kept.c, kept.d, last_kept.d};
   const Dent<Lanes> sums{dents.a, dents.b, dents.c, dents.d, last_dents.c, last_dents.d};
