@@ -194,6 +194,7 @@ WITH_COMPACTION = (
     Scene(law="cavity", tangential="ep/partial_slip", types=3, settings=DENSE[0]),
     Scene(law="cavity", rolling="epsd2", types=3, loose=True, ranks=2, rebuild=True, settings=DENSE[1]),
     Scene(law="cavity", rolling="cdt", freeze=True, loose=True, walls=True, settings=DENSE[0]),
+    Scene(law="cavity_adhesive", types=3, loose=True, settings=DENSE[0]),
 )
 
 

@@ -342,7 +342,7 @@ inline Step<CavityAdhesive<T>> step(const CavityAdhesive<T>& law, T R_star,
     at_touch = select(dented, opening.force(z), at_touch);
   }
   if (any(flows)) {
-    const auto at_once = forms & !dented & (yield <= 0.0);
+    const auto at_once = forms & flows & !dented & (yield <= 0.0);
     if (any(at_once)) {
       const Point<T> first = law.body.load(R_star, law.backbone_overlap(R_star, zero));
       at_touch = select(at_once, first.force - law.punch(first.radius), at_touch);

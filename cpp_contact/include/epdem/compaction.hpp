@@ -508,6 +508,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
   auto parts = !(overlap + v.extrapolated > 0.0);
   T force;  // without a jump
   if constexpr (adheres<Law>) {
+    grown_before.delta_max = select(known, s.reached_grown, zero);  // a new contact grows, across a gap, too
     const auto has_curve = (before.dent > 0.0) | (s.reached_grown <= law.yield_overlap(R_star));
     s.first = detail::grown_history(law, R_star, grown_before, known & !(kept(known) & has_curve), load);
     s.step = step(law, R_star, s.first, s.overlap, closing, load);

@@ -270,7 +270,7 @@ struct Beside {
         *(owned ? energy + j : others + 1) += stored;
         *(owned ? loaded + j : others + 2) += bears;
       }
-      if constexpr (adheres) {
+      if (adheres && parted) {
         parted[i] += 0.5 * b.adhesion_loss.a[k];
         *(owned ? parted + j : others + 3) += 0.5 * b.adhesion_loss.a[k];
       }
@@ -300,7 +300,7 @@ struct Beside {
 template <bool torques, bool tallies, Reach reach>
 void PairLoop::scatter(const Plan& plan, int n) {
   double ghost[4 + dent_sums] = {};
-  Beside<tallies, reach == Reach::attached, reach == Reach::grown> beside(*block_, plan, ghost);
+  Beside<tallies, reach != Reach::touching, reach == Reach::grown> beside(*block_, plan, ghost);
   scatter_pairs<torques>(*block_, n, atom->f[0], atom->torque[0], atom->nlocal, beside);
 }
 
