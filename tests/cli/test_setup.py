@@ -243,10 +243,15 @@ def test_theory_and_laws_import_numpy_alone(module):
 @pytest.mark.yade
 @pytest.mark.skipif("YADE_SOURCE" not in os.environ, reason="YADE_SOURCE names no source of YADE")
 @pytest.mark.parametrize(
-    ("order", "more"), [("yade lammps demo", {}), ("lammps wheel yade demo lammps", {"EXTRA": ""})]
+    ("order", "more"),
+    [
+        pytest.param("yade lammps demo", {}, id="yade first"),
+        pytest.param("lammps wheel yade demo lammps", {"EXTRA": ""}, marks=pytest.mark.slow, id="lammps first"),
+    ],
 )
 def test_targets_work_in_any_order(order, more, tmp_path):
-    """Nothing is optimized, and the second time the tools of tests are left out."""
+    """Nothing is optimized, and the second time the tools of tests are left out. As the only slow one of this file it
+    begins in another process than the first."""
     subprocess.run(["git", "clone", "-q", ROOT, tmp_path / "a clone"], check=True)
     quick = {"CXXFLAGS": "-O0", "CMAKE_BUILD_TYPE": "None", "PIP_NO_COMPILE": "0"}  # 0: pip takes it for --no-compile
     done = subprocess.run(
