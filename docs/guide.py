@@ -22,7 +22,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import typer
 from pydantic import BaseModel
 
-import epdem
+import epdem.api
 from epdem.base.declarations import declarations
 from epdem.case import kinds
 from epdem.case.fields import Quantity
@@ -95,7 +95,7 @@ def _cell(text: str) -> str:
 
 def python() -> str:
     """The public names of the package with their signatures and docstrings."""
-    text, package = ["# Python\n"], {name: getattr(epdem, name) for name in sorted(vars(epdem)["__all__"])}
+    text, package = ["# Python\n"], {name: getattr(epdem, name) for name in sorted(epdem.api.__all__)}
     for name, thing in [*package.items()]:
         if inspect.ismodule(thing):
             package |= {f"{name}.{part}": getattr(thing, part) for part in thing.__all__}

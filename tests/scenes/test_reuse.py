@@ -205,7 +205,7 @@ def test_results_of_other_inputs_move_aside_and_those_of_another_case_stay(kind,
 def test_a_sweep_of_impacts_is_judged_anew_without_a_start(tmp_path, monkeypatch):
     tool, starts = counted(engine("liggghts"), monkeypatch)
     monkeypatch.setattr(sweeps, "engine", lambda name: tool)
-    monkeypatch.setattr(sweeps.local, "each", lambda function, items, jobs: ((n, function(n)) for n in items))
+    monkeypatch.setattr(sweeps, "each", lambda function, items, jobs: ((n, function(n)) for n in items))
 
     def swept(text):
         (tmp_path / "case.toml").write_text(text)
