@@ -71,9 +71,10 @@ def lattice(folder, law):
 
 @pytest.mark.lammps
 @pytest.mark.liggghts
-def test_a_press_in_lammps_is_that_of_liggghts(tmp_path):
+@pytest.mark.parametrize("law", [COMPACT, STICKY | {"work_of_adhesion": "0.02 J/m^2"}], ids=lambda law: law["name"])
+def test_a_press_in_lammps_is_that_of_liggghts(law, tmp_path):
     """Forces, growth and energies of all contacts while the plate presses, stands and goes back."""
-    path = lattice(tmp_path, COMPACT)
+    path = lattice(tmp_path, law)
     ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("lammps", "liggghts"))
     for name in ("kinetic_energy", "largest_overlap_ratio", "lid_force_z", "floor_force_z", "left_force_x"):
         largest = np.abs(theirs.rows[name]).max()  # LIGGGHTS writes 8 digits
