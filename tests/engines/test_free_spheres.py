@@ -402,7 +402,9 @@ def test_pull_off_force_by_slow_separation(host, law, floor, deepest, tmp_path):
     assert force[-1] == 0
 
 
-@pytest.mark.parametrize(("host", "meets"), on(HOSTS, ["plane", "sphere"]) + on([LIGGGHTS], ["sphere, generic loop"]))
+@pytest.mark.parametrize(
+    ("host", "meets"), on(HOSTS, ["plane", "sphere", "sphere, compaction"]) + on([LIGGGHTS], ["sphere, generic loop"])
+)
 def test_a_contact_whose_growth_creates_energy_is_refused_with_its_limit_when_it_forms(host, meets, tmp_path):
     """2 % above the limit of theory, in proportion to R*: two spheres on the plane that never meet, or two spheres that
     meet in the seventh step; 2 % below the limit the run ends."""
@@ -411,6 +413,7 @@ def test_a_contact_whose_growth_creates_energy_is_refused_with_its_limit_when_it
     if meets != "plane":
         x, v = np.array([[-1.0, 0, 0], [1.0, 0, 0]]) * (R_ADHESIVE + 6.5e-7), [[10.0, 0, 0], [-10.0, 0, 0]]
         scene = replace(scene, x=x, v=v, plane=None, steps=10, loop="generic" * ("generic" in meets))
+        scene = replace(scene, compaction="compaction" in meets)
     for share in (0.98, 1.02):
         scene = replace(scene, materials=[sticky("cavity_adhesive")[0] | {"workOfAdhesion": share * limit}])
         if share < 1:
