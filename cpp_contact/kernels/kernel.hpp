@@ -281,9 +281,10 @@ constexpr void fill(Kernels& kernels) noexcept {
     kernels.of[law][friction][0] = offered<Law, Friction, false>();
     kernels.of[law][friction][1] = offered<Law, Friction, true>();
     if constexpr (compacts<Law> && (!adheres<Law> || Friction::of_liggghts)) {
-      kernels.grown[law][friction][0][0] = &contacts<Law, Friction, false, true, false>;
+      constexpr bool complete = adheres<Law>;  // one kernel for both: few scenes have it
+      kernels.grown[law][friction][0][0] = &contacts<Law, Friction, false, true, complete>;
       kernels.grown[law][friction][0][1] = &contacts<Law, Friction, false, true, true>;
-      kernels.grown[law][friction][1][0] = &contacts<Law, Friction, true, true, false>;
+      kernels.grown[law][friction][1][0] = &contacts<Law, Friction, true, true, complete>;
       kernels.grown[law][friction][1][1] = &contacts<Law, Friction, true, true, true>;
     }
   });

@@ -43,14 +43,14 @@ IN_FORK = "os.register_at_fork(after_in_parent=signalled)\n"
 CALL = "processes.call(['sleep', '60'], Path.cwd(), log='out')"
 STOPPED_IN = {
     "fork of a program": IN_FORK + CALL,
-    "fork of a pool": IN_FORK + "list(local.each(time.sleep, deque([60.0]), 1))",
+    "fork of a pool": IN_FORK + "list(each(time.sleep, deque([60.0]), 1))",
     "end of a worker": """found = os.waitpid
 def reaped(*words):
     ended = found(*words)
     signalled()
     return ended
 os.waitpid = reaped
-list(local.each(abs, deque([1.0]), 1))
+list(each(abs, deque([1.0]), 1))
 """,
     "start of a program": """class Late(subprocess.Popen):
     def __init__(self, *words, **options):
@@ -70,7 +70,7 @@ SCRIPT = """import atexit, os, signal, subprocess, time
 from collections import deque
 from pathlib import Path
 from epdem.base import processes
-from epdem.studies.sweep import local
+from epdem.studies.sweep.run import each
 def signalled():
     os.kill(os.getpid(), signal.SIGTERM)
 def at_end():

@@ -37,11 +37,11 @@ def test_the_header_of_the_deck_of_mdr_is_comments(tmp_path):
     assert (tmp_path / "in.impact").read_text().splitlines()[:2] == ["# two shell touch pwned", "# joined"]
 
 
-@pytest.mark.parametrize(("engine", "script"), [(LiggghtsMotions(), "in.motion"), (YadeMotions(), "motion.py")])
+@pytest.mark.parametrize(("engine", "script"), [(LiggghtsMotions, "in.motion"), (YadeMotions, "motion.py")])
 def test_the_deck_of_a_motion_is_as_stored(engine, script, module):
     """The materials are of one name each: the second sphere is of the wall's."""
     touch = touch_of(CASES / "oblique_steel.toml")
-    compare(HERE, f"motion_{script[-2:]}", engine.files(touch, shear_elastic(touch))[script])
+    compare(HERE, f"motion_{script[-2:]}", engine().files(touch, shear_elastic(touch))[script])
 
 
 @pytest.mark.parametrize("variant", ["swap", "sort", "migration", "restart"])
