@@ -267,8 +267,9 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       scene->forces.addTorque(id1, eigen(loads.torque_i));
       scene->forces.addTorque(id2, eigen(loads.torque_j));
     }
-    if constexpr (epdem::adheres<Law> && !grows) return c.overlap > 0.0 || history.law.root > 0.0;
-    return true;
+    bool attached = true;
+    if constexpr (epdem::adheres<Law>) attached = c.overlap > 0.0 || history.law.root > 0.0;
+    return grows || attached;
   }
 
   /// Adds plastic work of a step [J].
