@@ -91,6 +91,9 @@ struct Cavity {
     return 2.0 * (1.0 + b) * (1.0 + 1.0 / (2.0 * c_Y)) - 0.5 * (1.0 + b) - 0.125 / log_s;
   }
 
+  /// The law without adhesion.
+  const Cavity& backbone() const noexcept { return *this; }
+
   T yield_ratio() const noexcept { return a_ratio * a_ratio; }  // alpha_Y/R*
 
   T elastic_overlap(T R_star) const noexcept { return yield_ratio() * R_star; }

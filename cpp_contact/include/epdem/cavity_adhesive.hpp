@@ -145,6 +145,8 @@ struct CavityAdhesive {
     body = Cavity<T>(E_star, parameter + 1);
   }
 
+  const Cavity<T>& backbone() const noexcept { return body; }
+
   void confine(T share) noexcept { body.confine(share); }
   auto softens() const noexcept { return body.softens(); }
 

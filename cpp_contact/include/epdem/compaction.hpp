@@ -376,16 +376,6 @@ EPDEM_INLINE GrownEnd<T> end_of(const GrowthState<T>& s) noexcept {
 
 namespace detail {
 
-/// The law without the punch.
-template <class T>
-EPDEM_INLINE const Cavity<T>& backbone_of(const Cavity<T>& law) noexcept {
-  return law;
-}
-template <class T>
-EPDEM_INLINE const Cavity<T>& backbone_of(const CavityAdhesive<T>& law) noexcept {
-  return law.body;
-}
-
 /// d [m] and P_t [N] at a peak.
 template <class T>
 struct Punch {
@@ -447,7 +437,7 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
                                        T overlap, [[maybe_unused]] T closing, Growing<wall, T>& c,
                                        bool repeats) noexcept {
   const T zero{};
-  const auto& body = detail::backbone_of(law);
+  const auto& body = law.backbone();
   union Room {  // set below number by number: zeros in all of it take 5 % of the step
     GrownStep<Law> step;
     Room() noexcept {}
