@@ -27,6 +27,14 @@ def pressed(law, **tables):
     return data | {"law": law, "scene": data["scene"] | scene, "output": output} | tables
 
 
+def test_a_press_of_spheres_that_stick_takes_half_of_the_step():
+    """With the whole step press_tablet loses half of its pressure in its last hold at 1 J/m^2."""
+    data = read_toml(CASES / "press_tablet.toml")
+    laws = data["law"], data["law"] | STICKY | {"work_of_adhesion": "1 J/m^2"}
+    plain, sticky = (plan(parse(data | {"law": law})).time_step for law in laws)
+    assert sticky == pytest.approx(0.5 * plain, rel=0.1)
+
+
 @pytest.mark.liggghts
 @pytest.mark.parametrize("law", [COMPACT, STICKY | {"work_of_adhesion": "1 J/m^2"}], ids=lambda law: law["name"])
 def test_energies_of_a_press_leave_nothing_over_and_growth_raises_its_force(law, tmp_path):
