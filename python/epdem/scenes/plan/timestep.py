@@ -16,7 +16,8 @@ from ...theory import timestep as times
 from .model import model, pair_law
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
-# of that step with adhesion beside compaction: a press of 600 spheres loses half of its pressure in a hold at the whole
+# of the stable step of a bed with adhesion beside compaction: with the whole one a press of 600 spheres loses half of
+# its pressure in a hold
 STICKING_PRESS = 0.5
 
 
@@ -30,6 +31,8 @@ def bed_share(x: Experiment, *, sticking: bool, screening: float = 1.0) -> float
     stable = times.retreating_packing(screening)
     if sticking:
         stable = min(stable, float(times.sticking_packing(screening * 4.0 * x.G_star / x.E_star)))
+    if screening < 1.0 and x.law.adheres:
+        stable *= STICKING_PRESS
     return MARGIN * stable
 
 
@@ -118,10 +121,7 @@ def time_step(case: SceneCase, density: float) -> float:
             step = search(x, prediction, case.numerics.error).time_step
         except CaseError as error:
             raise CaseError(f"numerics.{error}, or numerics.time_step") from None
-        share = bed_share(x, sticking=sticking, screening=screening)
-        if case.law.numbers.compaction and x.law.adheres:
-            share *= STICKING_PRESS
-        best = min(best, step, share * stable)
+        best = min(best, step, bed_share(x, sticking=sticking, screening=screening) * stable)
     power = 10.0 ** (math.floor(math.log10(best)) - 1)
     return float(f"{math.floor(best / power) * power:.1e}")  # two digits, rounded down: the deck is readable
 

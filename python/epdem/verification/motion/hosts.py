@@ -2,6 +2,7 @@
 """Prescribed motions of two spheres in the C library, and in decks of LIGGGHTS, LAMMPS and YADE that set both spheres
 in every step."""
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -89,9 +90,9 @@ class HostMotions(MotionEngine):
         (steps, _), *_ = data = list(self.data(touch, motion, deck))
         return {self.script: decks.render(self.template, deck=deck, summary=said, steps=steps), **dict(data)}
 
+    @abstractmethod
     def data(self, touch: Touch, motion: Motion, deck: Any) -> Iterator[tuple[str, str]]:
         """Name and text of the file of the steps, then of other files."""
-        raise NotImplementedError
 
 
 class LiggghtsMotions(HostMotions):
