@@ -196,8 +196,6 @@ int next_pairs(PairSearch& s, int* i, int* j, int* place) {
   return found;
 }
 
-typedef double Two __attribute__((vector_size(16)));
-
 /// BodySums of the spheres whose rows row(l) names.
 template <class RowOf>
 EPDEM_INLINE Lanes close_sums_of(const BodyRows r, RowOf row) {
@@ -223,8 +221,7 @@ EPDEM_INLINE Lanes close_sums_of(const BodyRows r, RowOf row) {
   put(r.bodies, body_values, {now.growth, now.area, now.pressure, now.parted});
   put(r.memory, r.memory_stride, {memory.pressure, memory.full, memory.parted, memory.last});
   put(r.memory + 1, r.memory_stride, {memory.full, memory.parted, memory.last, memory.old});
-  for (int l = 0; l < lane_count; ++l)
-    for (int c = 0; c < dent_sums; c += 2) store(r.sums + dent_sums * row(l) + c, Two{});
+  for (int l = 0; l < lane_count; ++l) __builtin_memset(r.sums + dent_sums * row(l), 0, dent_sums * sizeof(double));
   return now.growth;
 }
 

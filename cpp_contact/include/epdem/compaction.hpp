@@ -438,11 +438,8 @@ EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodi
                                        bool repeats) noexcept {
   const T zero{};
   const auto& body = law.backbone();
-  union Room {  // set below number by number: zeros in all of it take 5 % of the step
-    GrownStep<Law> step;
-    Room() noexcept {}
-  } room;
-  GrownStep<Law>& s = room.step;
+  Unset<GrownStep<Law>> room;  // zeros in all of it take 5 % of the step
+  GrownStep<Law>& s = room.numbers;
   s.grip = s.stretched = s.bond_loss = zero;
   GrowthState<T> last;
   copy_numbers<T, growth_values>(c.state, last);

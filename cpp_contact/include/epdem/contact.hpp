@@ -45,20 +45,14 @@ template <class Law, class T = Number<Law>>
   return law;
 }
 
-/// Room for a law of its own, which few contacts need: no other contact writes here.
-template <class Law>
-union OwnLaw {
-  Law law;
-  OwnLaw() noexcept {}
-};
-
-/// The law of a contact: that of the pair, or `own` where it depends on the radii of the contact.
+/// The law of a contact: that of the pair, or `own`, which few contacts set, where it depends on the radii of the
+/// contact.
 template <class Law, class T = Number<Law>>
 EPDEM_INLINE const Law& law_at(const ContactConstants<Law>& pair, [[maybe_unused]] T R_star,
-                               [[maybe_unused]] T radius_i, [[maybe_unused]] OwnLaw<Law>& own) noexcept {
+                               [[maybe_unused]] T radius_i, [[maybe_unused]] Unset<Law>& own) noexcept {
   if constexpr (is_confined<Law>) {
     const bool unlike = any(pair.law.softens()) && any(pair.bodies.strain_i != 0.5);
-    if (rarely(unlike)) return own.law = confined(pair, R_star, radius_i);
+    if (rarely(unlike)) return own.numbers = confined(pair, R_star, radius_i);
   }
   return pair.law;
 }
@@ -117,7 +111,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
                                          bool repeats = false, Observer&& observer = {},
                                          Growth&& growth = {}) noexcept {
   using T = Number<Law>;
-  OwnLaw<Law> own;
+  Unset<Law> own;
   const Law& law = law_at(pair, R_star, radius_i, own);
   NormalContact<Law> now{};
   now.overlap = overlap;
@@ -148,17 +142,14 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     delta_max = grown.delta_max;
     grip = grown.grip;
     observer.normal(pair, R_star, now.step, now.overlap, [&](bool holds = true) __attribute__((always_inline)) {
-      union Copy {  // what is passed by its address stays in memory
-        GrownStep<Law> step;
-        Copy() noexcept {}
-      } copy;
-      copy_numbers<T, sizeof copy / sizeof(T)>(grown, copy.step);
+      Unset<GrownStep<Law>> copy;  // what is passed by its address stays in memory
+      copy_numbers<T, sizeof copy / sizeof(T)>(grown, copy.numbers);
       if constexpr (adheres<Law>) {
         const State<Law> first = before;
-        return grown_energies(law, R_star, first, copy.step, overlap, closing, holds);
+        return grown_energies(law, R_star, first, copy.numbers, overlap, closing, holds);
       } else {
         const auto peak = before.point;
-        return grown_energies(law, R_star, peak, copy.step, overlap, closing, holds);
+        return grown_energies(law, R_star, peak, copy.numbers, overlap, closing, holds);
       }
     });
     growth.keep();

@@ -259,6 +259,13 @@ EPDEM_INLINE void keep_where(M mask, Numbers& all) noexcept {
   }
 }
 
+/// Room for numbers that are set one by one: to set all of them before takes time, where few are used or all follow.
+template <class Numbers>
+union Unset {
+  Numbers numbers;
+  Unset() noexcept {}
+};
+
 template <class T>
 EPDEM_INLINE T load(const double* p) noexcept {
   T x;
